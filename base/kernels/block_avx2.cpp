@@ -1,0 +1,9 @@
+#include "base/kernels/block_kernels.h"
+
+namespace pac {
+
+void fill_block_avx2(BlockKernels& table) {
+  static_cast<void>(table);
+}
+
+}  // namespace pac

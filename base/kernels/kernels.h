@@ -1,0 +1,25 @@
+// Every operation that has more than one implementation: one pointer each, one contract line each.
+// The scalar file of a family defines what its operations compute; every other file equals it bit for bit.
+#pragma once
+
+#include "base/isa.h"
+#include "base/kernels/block_kernels.h"
+#include "base/kernels/pixel_kernels.h"
+#include "base/kernels/tile_kernels.h"
+
+namespace pac {
+
+struct Kernels {
+  Isa isa = Isa::scalar;
+  BlockKernels block;  // 8x8 transforms and quantization
+  PixelKernels pixel;  // color conversion, chroma resampling, difference and composite
+  TileKernels tile;    // rasterization inside one tile
+};
+
+// The table of best_isa(). One atomic load after the first call; thread-safe.
+const Kernels& kernels();
+
+// The table of one instruction set, or null where it is not built or not supported here.
+const Kernels* kernels_for(Isa isa);
+
+}  // namespace pac

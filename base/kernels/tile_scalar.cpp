@@ -1,0 +1,9 @@
+#include "base/kernels/tile_kernels.h"
+
+namespace pac {
+
+void fill_tile_scalar(TileKernels& table) {
+  static_cast<void>(table);
+}
+
+}  // namespace pac

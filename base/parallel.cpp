@@ -1,0 +1,121 @@
+#include "base/parallel.h"
+
+#include <utility>
+
+#ifndef PAC_THREADS
+#define PAC_THREADS 1
+#endif
+
+#if PAC_THREADS
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+#endif
+
+namespace pac {
+
+#if PAC_THREADS
+
+// A job is published under the mutex with a new generation number; workers take indices from `next` until none is left.
+struct ThreadPool::State {
+  std::mutex mutex;
+  std::condition_variable wake, done;
+  std::vector<std::thread> workers;
+  void (*call)(void*, int64_t) = nullptr;
+  void* context = nullptr;
+  int64_t count = 0;
+  std::atomic<int64_t> next{0};
+  uint64_t generation = 0;
+  int n_active = 0;
+  bool stop = false;
+
+  void take_indices() {
+    for (int64_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) call(context, i);
+  }
+  void worker_loop() {
+    uint64_t seen = 0;
+    std::unique_lock lock(mutex);
+    while (true) {
+      wake.wait(lock, [&] { return stop || generation != seen; });
+      if (stop) return;
+      seen = generation;
+      lock.unlock();
+      take_indices();
+      lock.lock();
+      if (--n_active == 0) done.notify_one();
+    }
+  }
+};
+
+int hardware_thread_count() {
+  const unsigned n = std::thread::hardware_concurrency();
+  return n == 0 ? 1 : static_cast<int>(n);
+}
+
+ThreadPool::ThreadPool(int n_threads) : state_(new State) {
+  if (n_threads <= 0) n_threads = hardware_thread_count();
+  state_->workers.reserve(static_cast<size_t>(n_threads - 1));
+  for (int i = 1; i < n_threads; ++i) state_->workers.emplace_back([state = state_.get()] { state->worker_loop(); });
+}
+
+ThreadPool::~ThreadPool() {
+  if (state_ == nullptr) return;
+  {
+    std::lock_guard lock(state_->mutex);
+    state_->stop = true;
+  }
+  state_->wake.notify_all();
+  for (std::thread& worker : state_->workers) worker.join();
+}
+
+int ThreadPool::thread_count() const {
+  return 1 + static_cast<int>(state_->workers.size());
+}
+
+void ThreadPool::run(int64_t count, void (*call)(void*, int64_t), void* context) {
+  State& state = *state_;
+  if (state.workers.empty() || count <= 1) {
+    for (int64_t i = 0; i < count; ++i) call(context, i);
+    return;
+  }
+  {
+    std::lock_guard lock(state.mutex);
+    state.call = call;
+    state.context = context;
+    state.count = count;
+    state.next.store(0);
+    state.n_active = static_cast<int>(state.workers.size());
+    ++state.generation;
+  }
+  state.wake.notify_all();
+  state.take_indices();
+  std::unique_lock lock(state.mutex);
+  state.done.wait(lock, [&] { return state.n_active == 0; });
+}
+
+#else
+
+struct ThreadPool::State {};
+int hardware_thread_count() {
+  return 1;
+}
+ThreadPool::ThreadPool(int) : state_(new State) {}
+ThreadPool::~ThreadPool() = default;
+int ThreadPool::thread_count() const {
+  return 1;
+}
+void ThreadPool::run(int64_t count, void (*call)(void*, int64_t), void* context) {
+  for (int64_t i = 0; i < count; ++i) call(context, i);
+}
+
+#endif
+
+ThreadPool::ThreadPool(ThreadPool&&) noexcept = default;
+ThreadPool& ThreadPool::operator=(ThreadPool&& other) noexcept {
+  std::swap(state_, other.state_);  // the old workers are joined when `other` goes
+  return *this;
+}
+
+}  // namespace pac

@@ -1,0 +1,44 @@
+// The only place that makes threads. Built with PAC_THREADS=0 everything runs on the caller's thread, same results.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <type_traits>
+
+namespace pac {
+
+// Processors that this process may use; at least 1.
+int hardware_thread_count();
+
+// A fixed set of worker threads. One object, one caller at a time; destroying it joins the workers.
+class ThreadPool {
+ public:
+  // n_threads >= 1 counts the calling thread: 1 makes no thread at all. 0 = hardware_thread_count().
+  explicit ThreadPool(int n_threads = 0);
+  ~ThreadPool();
+  ThreadPool(ThreadPool&&) noexcept;
+  ThreadPool& operator=(ThreadPool&&) noexcept;
+
+  int thread_count() const;
+
+  // Calls fn(index) once for each index in [0, count), in no particular order, on all threads; returns when all are
+  // done. fn must not throw and must not call back into this pool.
+  template <class Fn>
+  void for_each(int64_t count, Fn&& fn) {
+    run(
+        count, [](void* context, int64_t index) { (*static_cast<std::remove_reference_t<Fn>*>(context))(index); }, &fn);
+  }
+
+ private:
+  void run(int64_t count, void (*call)(void*, int64_t), void* context);
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// A pool for one loop: for loops that take milliseconds or more.
+template <class Fn>
+void parallel_for(int n_threads, int64_t count, Fn&& fn) {
+  ThreadPool(n_threads).for_each(count, fn);
+}
+
+}  // namespace pac

@@ -1,0 +1,77 @@
+// The public face of the rasterizer: a Scene and a Camera become color, depth and ids.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "base/image.h"
+#include "base/isa.h"
+#include "base/result.h"
+#include "raster/scene.h"
+
+namespace pac::raster {
+
+enum class Shading : uint8_t {
+  flat,     // one color a polygon: lit at its first corner with the polygon's own normal
+  gouraud,  // lit at the vertices, colors interpolated
+  phong,    // normals interpolated, lit at each sample
+};
+
+// What one rendering does. The two renderings of a split differ only in this and, for tessellation, in the Scene.
+struct RenderQuality {
+  Shading shading = Shading::gouraud;
+  bool texture = true;           // false: every texture is replaced by its mean color
+  int samples = 1;               // 1, 4, 16 or 64 a pixel, box-filtered
+  bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
+
+  bool operator==(const RenderQuality&) const = default;
+};
+
+// Where the results go. Empty views are skipped. All views that are given have the renderer's size.
+struct RenderTargets {
+  RgbView color;
+  PlaneView<float> depth;  // window z in [0, 1] at the first sample; 1 = background
+  PlaneView<uint32_t> id;  // 1 + face number at the first sample; 0 = background
+};
+
+struct RenderStats {
+  uint64_t triangles_submitted = 0;  // after polygons are cut, before clipping
+  uint64_t triangles_drawn = 0;      // after clipping and culling
+  uint64_t triangles_dropped = 0;    // not finite, or zero area after snapping
+};
+
+struct RendererOptions {
+  int threads = 1;       // 0 = all
+  Isa isa = best_isa();  // must be built and supported
+  int max_side = 32768;  // pixels
+};
+
+// Draws scenes at one image size. Same bits for every ISA and thread count. Keeps its buffers between frames and no
+// pointer to a scene or target afterwards. One object, one thread at a time; distinct objects are independent.
+class Renderer {
+ public:
+  // 0 is a legal side (nothing is drawn). Fails with bad_argument or limit_exceeded.
+  static Result<Renderer> create(int width, int height, const RendererOptions& options = {});
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  // Draws. Fails with corrupt (mesh or material indices out of range: nothing is drawn) or bad_argument (samples, view
+  // sizes, a camera that is not finite).
+  Result<RenderStats> render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
+                             const RenderTargets& targets);
+
+  // H, L and D = 127 + (H-L)/2 of a split that shares the geometry, in one traversal [Levoy95 s.4.1 footnote]:
+  // clipping, setup, visibility once. `high` and `low` must have equal samples. Bits equal two render() calls and a
+  // subtraction.
+  Result<RenderStats> render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,
+                                  const RenderQuality& low, const RenderTargets& high_targets, RgbView low_color,
+                                  RgbView difference);
+
+ private:
+  struct State;
+  explicit Renderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pac::raster

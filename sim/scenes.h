@@ -1,0 +1,31 @@
+// The built-in scenes, each a function of a seed, with a camera path.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "raster/scene.h"
+
+namespace pac::sim {
+
+// What the splits need of one scene: two models where tessellation (or lighting) differs, one otherwise.
+struct SceneSet {
+  raster::Scene fine;
+  raster::Scene coarse;               // tessellation split: what the client draws; empty mesh = same as fine
+  std::vector<uint8_t> local_colors;  // RGBA a vertex of `fine`: lit locally only; empty = lighting is not baked
+  int width = 512, height = 512;      // the size that the demo uses
+  const char* default_split = "texture";
+};
+
+struct BuiltinScene {
+  const char* name;
+  const char* summary;  // one line, for `pac scenes`
+  SceneSet (*build)(uint32_t seed);
+  raster::Camera (*camera)(int frame, float aspect);  // frame 0 is the still
+};
+
+const std::vector<BuiltinScene>& builtin_scenes();
+const BuiltinScene* find_scene(std::string_view name);  // null if there is none
+
+}  // namespace pac::sim
