@@ -22,7 +22,11 @@ bool isa_is_built(Isa isa);
 // This processor (and operating system) executes it. scalar: always.
 bool isa_is_supported(Isa isa);
 
-// The best that is both built and supported.
+// The best that is both built and supported, or what override_best_isa() chose.
 Isa best_isa();
+
+// For programs that take an --isa option, called once at their start before any kernel is used: from then on best_isa()
+// and kernels() answer `isa`. False, with nothing changed, where it is not built or not supported. Libraries never call it.
+bool override_best_isa(Isa isa);
 
 }  // namespace pac

@@ -120,7 +120,15 @@ bool isa_is_supported(Isa isa) {
   }
 }
 
+bool override_best_isa(Isa isa) {
+  const Kernels* table = kernels_for(isa);
+  if (table == nullptr) return false;
+  g_best.store(table, std::memory_order_release);
+  return true;
+}
+
 Isa best_isa() {
+  if (const Kernels* chosen = g_best.load(std::memory_order_acquire)) return chosen->isa;
   Isa best = Isa::scalar;
   for (const IsaEntry& entry : kIsas)
     if (entry.built && isa_is_supported(entry.isa)) best = entry.isa;

@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# The libraries without CMake: one compiler command line over every file that is not of an ISA. Usage: one_line_build.sh CXX
+set -euo pipefail
+cd "$(dirname "$0")/.."
+program=$(mktemp)
+trap 'rm -f "$program"' EXIT
+"$1" -std=c++20 -O2 -ffp-contract=off -fno-rtti -I. tests/consumer/main.cpp \
+  $(ls {base,base/kernels,raster,jpeg,geomcodec}/*.cpp | grep -vE '_(sse41|avx2|neon)\.cpp$') -o "$program"
+"$program"
