@@ -28,6 +28,19 @@ bool write_stream(std::FILE* stream, std::span<const uint8_t> bytes) {
   return std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() && std::fflush(stream) == 0;
 }
 
+// A device or pipe such as /dev/null is written to: a rename would put a file in its place.
+bool is_special_file(const std::string& path) {
+  struct stat info;
+  return stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+}
+
+bool write_in_place(const std::string& path, std::span<const uint8_t> bytes) {
+  std::FILE* stream = std::fopen(path.c_str(), "wb");
+  if (stream == nullptr) return false;
+  const bool written = write_stream(stream, bytes);
+  return std::fclose(stream) == 0 && written;
+}
+
 }  // namespace
 
 Result<Bytes> read_file(const std::string& path, const Limits& limits) {
@@ -45,6 +58,7 @@ Result<Bytes> read_file(const std::string& path, const Limits& limits) {
 Result<void> write_file(const std::string& path, std::span<const uint8_t> bytes) {
   const Failure failure{Error::io, 0, "cannot write"};
   if (path == "-") return write_stream(stdout, bytes) ? Result<void>{} : Result<void>{failure};
+  if (is_special_file(path)) return write_in_place(path, bytes) ? Result<void>{} : Result<void>{failure};
   const std::string temporary = path + ".tmp" + std::to_string(static_cast<long>(getpid()));
   std::FILE* stream = std::fopen(temporary.c_str(), "wb");
   if (stream == nullptr) return failure;

@@ -1,0 +1,88 @@
+// `pac isa`: which instruction sets are built, which this processor has, and whose code each kernel runs.
+#include <cstdio>
+
+#include "base/kernels/kernels.h"
+#include "base/parallel.h"
+#include "sim/cli/command.h"
+
+namespace pac::cli {
+namespace {
+
+constexpr Isa kAll[] = {Isa::scalar, Isa::sse41, Isa::avx2, Isa::neon};
+
+using AnyFunction = void (*)();
+
+struct Kernel {
+  const char* family;
+  const char* name;
+  AnyFunction (*entry)(const Kernels& table);
+};
+
+#define PAC_KERNEL(family, name)                                                                          \
+  Kernel {                                                                                                \
+#family, #name, [](const Kernels& table) { return reinterpret_cast<AnyFunction>(table.family.name); } \
+  }
+
+const Kernel kKernelList[] = {
+    PAC_KERNEL(pixel, difference_row),
+    PAC_KERNEL(pixel, composite_row),
+};
+
+// The first instruction set, in ascending order, whose table holds the same function: its file exports it.
+Isa origin(const Kernel& kernel, const Kernels& table) {
+  for (const Isa isa : kAll) {
+    const Kernels* other = kernels_for(isa);
+    if (other != nullptr && kernel.entry(*other) == kernel.entry(table)) return isa;
+  }
+  return table.isa;
+}
+
+void print_table(const Kernels& table) {
+  std::printf("%-8s %-6s %s\n", "isa", "built", "supported");
+  for (const Isa isa : kAll)
+    std::printf("%-8s %-6s %s%s\n", isa_name(isa), isa_is_built(isa) ? "yes" : "no",
+                isa_is_supported(isa) ? "yes" : "no", isa == table.isa ? "   <- in use" : "");
+  std::printf("threads  %d\n\n%-7s %-28s %s\n", hardware_thread_count(), "family", "kernel", "uses");
+  for (const Kernel& kernel : kKernelList)
+    std::printf("%-7s %-28s %s\n", kernel.family, kernel.name, isa_name(origin(kernel, table)));
+}
+
+int print_as_json(const Kernels& table) {
+  sim::JsonWriter json;
+  json.begin_object();
+  json.field("isa", isa_name(table.isa));
+  json.field("threads", hardware_thread_count());
+  json.begin_array("instruction_sets");
+  for (const Isa isa : kAll) {
+    json.begin_object();
+    json.field("name", isa_name(isa));
+    json.field("built", isa_is_built(isa));
+    json.field("supported", isa_is_supported(isa));
+    json.end_object();
+  }
+  json.end_array();
+  json.begin_array("kernels");
+  for (const Kernel& kernel : kKernelList) {
+    json.begin_object();
+    json.field("family", kernel.family);
+    json.field("name", kernel.name);
+    json.field("uses", isa_name(origin(kernel, table)));
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return print_json(json);
+}
+
+}  // namespace
+
+int run_isa(Args args) {
+  Options options("isa", "which implementation each kernel uses, and which are built", "pac isa");
+  if (const auto code = options.parse(args)) return *code;
+  const Kernels& table = *kernels_for(options.isa);
+  if (options.json) return print_as_json(table);
+  print_table(table);
+  return kDone;
+}
+
+}  // namespace pac::cli
