@@ -1,0 +1,63 @@
+// The bytes between server and client: a session message (once) and one packet a frame. Little-endian throughout.
+//
+//   session  "PACM" version u16 flags u16 | width u32 height u32 | RenderQuality 4 x u8 | background 3 x f32
+//            | resident model: u64 length, bytes (absent where the model is transmitted) | CRC-32 u32
+//   frame    "PACF" version u16 codec u8 flags u8 | frame u32 | camera 19 x f32 | coded quality f64 | hash of L u64
+//            | model length u32 difference length u32 | model bytes | difference bytes | CRC-32 u32
+// The CRC [ISO 3309, as in PNG] covers all bytes before it. Floats travel as their raw bits, so that both sides draw
+// with the same numbers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/file_io.h"
+#include "base/result.h"
+#include "raster/renderer.h"
+#include "raster/scene.h"
+
+namespace pac::sim {
+
+enum class Codec : uint8_t { jpeg = 1 };
+
+constexpr uint16_t kProtocolVersion = 1;
+constexpr size_t kFramePacketOverhead = 120;  // bytes of a frame packet beside model and difference
+
+// Decoded form of one frame packet. The spans point into the packet.
+struct FramePacket {
+  uint32_t frame = 0;
+  Codec codec = Codec::jpeg;
+  bool has_model = false;  // the low-quality model travels with the frame
+  raster::Camera camera;
+  double quality = 0;     // coded quality of the difference image, for display only
+  uint64_t low_hash = 0;  // image_hash of the L that the server subtracted
+  std::span<const uint8_t> model;
+  std::span<const uint8_t> difference;
+};
+
+Bytes write_frame_packet(const FramePacket& packet);
+
+// Fails with truncated (shorter than it says), corrupt (magic, CRC, lengths, bytes after the end, camera not finite)
+// or unsupported (version, codec). Failure::byte_offset is the offending field's.
+Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes);
+
+struct SessionMessage {
+  int width = 0, height = 0;  // pixels, 1..65535
+  raster::RenderQuality low;  // how the client draws L
+  glm::vec3 background{0};
+  bool has_model = false;          // the model is resident
+  std::span<const uint8_t> model;  // serialize_model()'s bytes
+};
+
+Bytes write_session_message(const SessionMessage& message);
+Result<SessionMessage> read_session_message(std::span<const uint8_t> bytes);
+
+// A Scene without loss, in the fewest plain fields that its drawing needs: normals only where a material is lit,
+// texture coordinates and mip level 0 only where `textured` (else each texture is its mean color).
+Bytes serialize_model(const raster::Scene& scene, bool textured);
+
+// Fails with truncated, corrupt or limit_exceeded; the scene that comes back passes validate().
+Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& limits = {});
+
+}  // namespace pac::sim

@@ -1,0 +1,42 @@
+// The transmitted model [Levoy95 s.3]: per frame, polygons clipped to the view, in window coordinates of two bytes
+// each, with lit colors: ten bytes a vertex before geomcodec codes them with their connectivity.
+//
+// The client draws the decoded vertices as they are: x, y in pixels and window depth z are affine on the screen
+// across a plane polygon (z = a + b/w), so an affine matrix takes them to clip space with w = 1, and colors are
+// interpolated linearly on the screen, as a low-end workstation of 1995 did. The server draws its L from the
+// same decoded vertices by the same calls, so rounding costs difference bytes, never a mismatch.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "base/file_io.h"
+#include "base/result.h"
+#include "geomcodec/geomcodec.h"
+#include "raster/renderer.h"
+#include "raster/scene.h"
+
+namespace pac::sim {
+
+struct ScreenModel {
+  Bytes bytes;                   // geomcodec's stream: everything the client needs for this frame's L
+  geomcodec::EncodedSize parts;  // the same bytes by what they hold
+  uint64_t polygons = 0;         // that survive clipping
+  uint64_t vertices = 0;
+};
+
+// Clips `scene` against the six planes of the view, lights its vertices (Gouraud, untextured: mean colors), quantizes
+// to 16 bits a coordinate and encodes. The scene is one that low_scene made. Fails as geomcodec::encode and
+// Renderer::render.
+Result<ScreenModel> encode_screen_model(const raster::Scene& scene, const raster::Camera& camera,
+                                        const raster::RenderQuality& quality, int width, int height);
+
+// The scene and camera that draw the decoded polygons in a window of width x height. Fails as geomcodec::decode.
+struct ScreenScene {
+  raster::Scene scene;
+  raster::Camera camera;
+};
+Result<ScreenScene> decode_screen_model(std::span<const uint8_t> bytes, int width, int height, glm::vec3 background,
+                                        const Limits& limits = {});
+
+}  // namespace pac::sim

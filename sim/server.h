@@ -1,0 +1,61 @@
+// The rendering server [Levoy95 s.2, figure 1]: draws H and L, codes their difference, and knows what the client will
+// show.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "base/file_io.h"
+#include "base/image.h"
+#include "base/isa.h"
+#include "base/result.h"
+#include "raster/scene.h"
+#include "sim/match.h"
+#include "sim/scenes.h"
+#include "sim/split.h"
+
+namespace pac::sim {
+
+struct ServerOptions {
+  int width = 512, height = 512;  // pixels, 1..65535
+  double quality = 41;            // coded quality of D (the paper's notation), (0, 100]
+  uint64_t target_bytes = 0;      // > 0: search the quality for this difference size instead, frame by frame
+  bool transmit_model = false;    // false: the model is resident, in the session message
+  CodingOptions coding;
+  int threads = 1;  // of the renderer; 0 = all. Results never depend on it
+  Isa isa = best_isa();
+};
+
+// What the server knows of the frame it just sent; valid until the next frame() call.
+struct ServerFrame {
+  RgbImage high, low, difference;
+  RgbImage composite;  // what a client will show, bit for bit
+  double quality = 0;  // coded quality of D
+  uint64_t model_bytes = 0, difference_bytes = 0, packet_bytes = 0;
+};
+
+// One object, one thread at a time; distinct objects are independent.
+class Server {
+ public:
+  // Takes the scene over. Fails with bad_argument (size, quality, split: transmitted models are drawn untextured, so
+  // a split whose L is textured cannot transmit).
+  static Result<Server> create(SceneSet scene, Split split, const ServerOptions& options = {});
+  ~Server();
+  Server(Server&&) noexcept;
+  Server& operator=(Server&&) noexcept;
+
+  // The session message: sent once, before any frame. Holds the resident model, or only size and quality.
+  const Bytes& session() const;
+
+  // Renders, subtracts, codes: one packet. `frame_number` is free.
+  Result<Bytes> frame(uint32_t frame_number, const raster::Camera& camera);
+
+  const ServerFrame& last_frame() const;
+
+ private:
+  struct State;
+  explicit Server(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pac::sim
