@@ -15,11 +15,71 @@ void composite_row(const uint8_t* l, const uint8_t* d, uint8_t* c, size_t n) {
   for (size_t i = 0; i < n; ++i) c[i] = clamp_to_byte(l[i] + 2 * (d[i] - 127));
 }
 
+void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uint8_t* cr) {
+  constexpr int kHalf = 1 << 15, kCenter = 128 << 16;
+  for (size_t i = 0; i < n; ++i) {
+    const int r = rgb[3 * i], g = rgb[3 * i + 1], b = rgb[3 * i + 2];
+    y[i] = static_cast<uint8_t>((19595 * r + 38470 * g + 7471 * b + kHalf) >> 16);
+    cb[i] = static_cast<uint8_t>((-11059 * r - 21709 * g + 32768 * b + kCenter + kHalf - 1) >> 16);
+    cr[i] = static_cast<uint8_t>((32768 * r - 27439 * g - 5329 * b + kCenter + kHalf - 1) >> 16);
+  }
+}
+
+void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
+  constexpr int kHalf = 1 << 15;
+  for (size_t i = 0; i < n; ++i) {
+    const int u = cb[i] - 128, v = cr[i] - 128;
+    rgb[3 * i] = clamp_to_byte(y[i] + ((91881 * v + kHalf) >> 16));
+    rgb[3 * i + 1] = clamp_to_byte(y[i] + ((-22554 * u - 46802 * v + kHalf) >> 16));
+    rgb[3 * i + 2] = clamp_to_byte(y[i] + ((116130 * u + kHalf) >> 16));
+  }
+}
+
+void downsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; ++i)
+    out[i] = static_cast<uint8_t>((in[2 * i] + in[2 * i + 1] + static_cast<int>(i & 1)) >> 1);
+}
+
+void downsample_h2v2_row(const uint8_t* a, const uint8_t* b, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; ++i) {
+    const int sum = a[2 * i] + a[2 * i + 1] + b[2 * i] + b[2 * i + 1];
+    out[i] = static_cast<uint8_t>((sum + 1 + static_cast<int>(i & 1)) >> 2);
+  }
+}
+
+void upsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; ++i) {
+    const int left = in[i == 0 ? 0 : i - 1], right = in[i + 1 == n ? i : i + 1];
+    out[2 * i] = static_cast<uint8_t>((3 * in[i] + left + 1) >> 2);
+    out[2 * i + 1] = static_cast<uint8_t>((3 * in[i] + right + 2) >> 2);
+  }
+}
+
+void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_t* out) {
+  const auto column = [near, far](size_t i) { return 3 * near[i] + far[i]; };
+  for (size_t i = 0; i < n; ++i) {
+    const int left = column(i == 0 ? 0 : i - 1), right = column(i + 1 == n ? i : i + 1);
+    out[2 * i] = static_cast<uint8_t>((3 * column(i) + left + 8) >> 4);
+    out[2 * i + 1] = static_cast<uint8_t>((3 * column(i) + right + 7) >> 4);
+  }
+}
+
+void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; ++i) out[i] = static_cast<uint8_t>((3 * near[i] + far[i] + bias) >> 2);
+}
+
 }  // namespace
 
 void fill_pixel_scalar(PixelKernels& table) {
   table.difference_row = difference_row;
   table.composite_row = composite_row;
+  table.ycc_from_rgb_row = ycc_from_rgb_row;
+  table.rgb_from_ycc_row = rgb_from_ycc_row;
+  table.downsample_h2v1_row = downsample_h2v1_row;
+  table.downsample_h2v2_row = downsample_h2v2_row;
+  table.upsample_h2v1_row = upsample_h2v1_row;
+  table.upsample_h2v2_row = upsample_h2v2_row;
+  table.upsample_h1v2_row = upsample_h1v2_row;
 }
 
 }  // namespace pac
