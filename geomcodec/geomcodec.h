@@ -1,6 +1,9 @@
-// Lossless compression of quantized polygon meshes: the scheme that Levoy 1995, section 3, proposes and estimates.
+// Lossless compression of quantized polygon meshes: the scheme that Levoy 1995, section 3, proposes and estimates,
+// built and with its connectivity counted. FORMAT.md is the byte-exact description. Functions are independent and
+// thread-safe.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,11 +16,19 @@ namespace pac::geomcodec {
 // Three fixed-point coordinates and a color: the paper's 10-byte vertex.
 struct QuantizedVertex {
   uint16_t position[3] = {0, 0, 0};
-  uint8_t color[4] = {255, 255, 255, 255};
+  uint8_t color[4] = {255, 255, 255, 255};  // RGBA
   bool operator==(const QuantizedVertex&) const = default;
 };
 
-// A mesh on an integer grid. position = origin + grid * step, per axis.
+// A lattice of points: coordinate = origin + n * step per axis, n in 0 .. 2^bits - 1.
+struct Grid {
+  float origin[3] = {0, 0, 0};
+  float step[3] = {1, 1, 1};
+  int bits = 16;  // 1..16
+};
+
+// A mesh on an integer grid. Faces as in base/mesh.h: any number of corners from 3, any indices below vertices.size();
+// non-manifold, isolated, duplicate and degenerate parts are all legal. Every coordinate is below 2^position_bits.
 struct QuantizedMesh {
   std::vector<QuantizedVertex> vertices;
   std::vector<uint32_t> indices;
@@ -27,22 +38,66 @@ struct QuantizedMesh {
   float step[3] = {1, 1, 1};
 };
 
-// The only lossy step: rounds to the grid that `position_bits` (1..16) lays over the bounding box; drops normals and
-// texture coordinates. Fails with bad_argument (bits) or corrupt (position not finite).
+// The only lossy step: rounds to the nearest point of a cubic grid (one step for the three axes: the longest side of
+// the bounding box over 2^position_bits - 1; 1 where the mesh has no extent), halves upwards. Drops normals and texture
+// coordinates. Fails with bad_argument (position_bits outside 1..16) or corrupt (a position that is not finite;
+// byte_offset = vertex number).
 Result<QuantizedMesh> quantize(const Mesh& mesh, int position_bits);
 
-// Positions back as floats (one rounding rule on every machine).
+// The same on a grid that the caller fixes, so that meshes and frames share it (screen space: step 1/16 pixel in x and
+// y, 2^-16 in z). Positions outside the grid go to its nearest point. Fails also with bad_argument if a step is not
+// positive and finite or an origin not finite.
+Result<QuantizedMesh> quantize(const Mesh& mesh, const Grid& grid);
+
+// Positions back as floats: float(double(origin) + n * double(step)), the same bits on every machine.
 Mesh dequantize(const QuantizedMesh& mesh);
 
 struct EncodeOptions {
-  bool keep_order = false;  // vertices and faces come back in the order given, else in the order that codes best
-};
-struct EncodedSize {
-  uint64_t header_bytes = 0, connectivity_bytes = 0, position_bytes = 0, color_bytes = 0;
+  bool keep_order = false;  // vertices, faces and first corners come back in the order given, else as reorder() says
 };
 
+// What each part of an encoded mesh costs. They add up to the size of the stream.
+struct EncodedSize {
+  uint64_t header_bytes = 0, connectivity_bytes = 0, position_bytes = 0, color_bytes = 0, material_bytes = 0;
+  uint64_t order_bytes = 0;  // the permutations that keep_order adds
+  uint64_t total_bytes() const {
+    return header_bytes + connectivity_bytes + position_bytes + color_bytes + material_bytes + order_bytes;
+  }
+};
+
+// Section 3's estimate for a model: 10 bytes a vertex, compressed 3:1, one vertex a polygon, connectivity not counted.
+inline double levoy95_estimated_bytes(uint64_t n_polygons) {
+  return static_cast<double>(n_polygons) * 10.0 / 3.0;
+}
+
+// Fails with bad_argument: position_bits, a coordinate above the grid, a face that base/mesh.h's validate() refuses,
+// more than 2^31 - 1 vertices, faces or corners.
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options = {},
                                     EncodedSize* size = nullptr);
+
+// The inverse: decode(encode(q, {.keep_order = true})) == q and decode(encode(q)) == reorder(q), both with `indices`
+// packed (face i's corners follow those of face i - 1). Rejects whatever encode() could not have written as far as one
+// can see: wrong magic, version, checksum, lengths; every strict prefix; trailing bytes. Every index of the result is
+// below its vertex count. limits: max_triangles; max_bytes for the decoded arrays, checked while they grow.
 Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limits = {});
+
+// The order in which encode() walks a mesh: faces as the walk meets them (FORMAT.md section 4), each rotated so that
+// the shared edge it was entered by comes first (orientation is kept), vertices by first appearance, those that no face
+// uses last in their old order. Idempotent. The mesh must be one that encode() accepts; else it comes back empty.
+QuantizedMesh reorder(const QuantizedMesh& mesh);
+
+// What the header says, read without decoding (the checksum is verified, limits are not).
+struct StreamInfo {
+  int version = 0;
+  uint32_t n_vertices = 0, n_faces = 0, n_corners = 0;
+  uint32_t n_materials = 0;  // highest material number + 1; 0 without faces
+  int position_bits = 0;
+  float origin[3] = {0, 0, 0};
+  float step[3] = {1, 1, 1};
+  bool constant_color = false;  // all vertices share one color
+  bool keeps_order = false;
+  EncodedSize size;
+};
+Result<StreamInfo> read_info(std::span<const uint8_t> bytes);
 
 }  // namespace pac::geomcodec

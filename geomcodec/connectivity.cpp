@@ -1,0 +1,329 @@
+#include "geomcodec/connectivity.h"
+
+#include <algorithm>
+#include <array>
+
+#include "geomcodec/models.h"
+#include "geomcodec/open_edges.h"
+
+namespace pac::geomcodec {
+namespace {
+
+// How a corner is named, in the order in which the code asks.
+enum Step : uint32_t { kNew, kBefore, kAfter, kAfterAfter, kBeforeBefore, kOld, kSteps };
+
+// Where in its face a corner stands: the contexts differ.
+enum Place : uint32_t { kOnlyCorner, kFirstOfSeveral, kMiddle, kLastOfSeveral, kSeed, kPlaces };
+
+constexpr uint32_t kMaxDegree = 9;  // faces around a vertex, as contexts count them
+
+struct Models {
+  AdaptiveBit face_across_left[kMaxDegree + 1][2][2];
+  AdaptiveBit face_across_right[kMaxDegree + 1][2][2];
+  NumberModel face_size[4];
+  AdaptiveBit step_left[kPlaces][8][kMaxDegree + 1][kSteps];
+  AdaptiveBit step_right[kPlaces][8][kMaxDegree + 1][kSteps][kSteps];
+  NumberModel old_vertex;
+};
+
+// The faces of the encoder's mesh by directed edge.
+class EdgeIndex {
+ public:
+  EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces);
+  // A face that is not taken and has an edge from -> to: the lowest one. Its number and the corner at `from`.
+  bool find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corner);
+  // The lowest face that is not taken; there must be one.
+  uint32_t lowest_free() {
+    while (taken_[lowest_free_] != 0) ++lowest_free_;
+    return lowest_free_;
+  }
+  void take(uint32_t face) { taken_[face] = 1; }
+
+ private:
+  struct Edge {
+    uint32_t from, to, face, corner;
+    bool operator<(const Edge& o) const {
+      if (from != o.from) return from < o.from;
+      if (to != o.to) return to < o.to;
+      return face != o.face ? face < o.face : corner < o.corner;
+    }
+  };
+  std::vector<Edge> edges_;            // sorted
+  std::vector<uint32_t> free_offset_;  // at the first edge of each run of equal (from, to): edges known to be taken
+  std::vector<uint8_t> taken_;
+  uint32_t lowest_free_ = 0;
+};
+
+EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces) : taken_(faces.size()) {
+  for (uint32_t f = 0; f < faces.size(); ++f)
+    for (uint32_t k = 0; k < faces[f].count; ++k)
+      edges_.push_back({indices[faces[f].first + k], indices[faces[f].first + (k + 1) % faces[f].count], f, k});
+  std::sort(edges_.begin(), edges_.end());
+  free_offset_.assign(edges_.size(), 0);
+}
+
+bool EdgeIndex::find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corner) {
+  const size_t run =
+      static_cast<size_t>(std::lower_bound(edges_.begin(), edges_.end(), Edge{from, to, 0, 0}) - edges_.begin());
+  if (run == edges_.size()) return false;
+  for (size_t i = run + free_offset_[run]; i < edges_.size(); ++i) {
+    if (edges_[i].from != from || edges_[i].to != to) return false;
+    if (taken_[edges_[i].face] == 0) {
+      face = edges_[i].face;
+      corner = edges_[i].corner;
+      return true;
+    }
+    ++free_offset_[run];
+  }
+  return false;
+}
+
+// What only the encoder has.
+struct Source {
+  Source(std::span<const uint32_t> mesh_indices, std::span<const Face> mesh_faces, uint32_t n_vertices)
+      : indices(mesh_indices), faces(mesh_faces), edges(mesh_indices, mesh_faces), coded_vertex(n_vertices, kNone) {}
+  std::span<const uint32_t> indices;
+  std::span<const Face> faces;
+  EdgeIndex edges;
+  std::vector<uint32_t> coded_vertex;  // per mesh vertex: its coded number, or kNone
+  WalkOrder order;
+  uint32_t face = 0, first_corner = 0;  // the face being coded
+
+  uint32_t mesh_vertex(uint32_t k) const {
+    const Face& f = faces[face];
+    return indices[f.first + (first_corner + k) % f.count];
+  }
+};
+
+template <class Coder>
+class Walk {
+ public:
+  Walk(Coder& coder, const ConnectivityHeader& header, Source* source)
+      : coder_(coder), header_(header), source_(source), open_(topology_), models_(1) {}
+
+  // False: the data cannot come from an encoder.
+  bool run() {
+    while (topology_.n_faces() < header_.n_faces) {
+      const uint32_t gate = open_.front();
+      if (gate == kNone) {
+        if (!code_seed()) return false;
+      } else if (face_across(gate)) {
+        if (!code_face(gate)) return false;
+      }
+      if (coder_.failed()) return false;
+    }
+    for (uint32_t& twin : topology_.twin)
+      if (twin == kOpen) twin = kNone;
+    return topology_.n_vertices == header_.n_vertices && topology_.n_corners() == header_.n_corners;
+  }
+  Topology take() { return std::move(topology_); }
+
+ private:
+  static uint32_t clamped(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
+  uint32_t start_of(uint32_t corner) const { return topology_.corner_vertex[corner]; }
+  uint32_t end_of(uint32_t corner) const { return start_of(topology_.next(corner)); }
+  uint32_t degree(uint32_t vertex) const { return clamped(degree_[vertex], kMaxDegree); }
+
+  bool face_across(uint32_t gate);
+  bool code_seed();
+  bool code_face(uint32_t gate);
+  uint32_t code_size(uint32_t context);
+  bool code_corner(uint32_t k, Place place);
+  Step code_step(Place place, const std::array<uint32_t, kOld>& candidate, uint32_t wanted);
+  uint32_t code_old_vertex(uint32_t wanted);
+  void finish_face(uint32_t gate);
+
+  Coder& coder_;
+  const ConnectivityHeader header_;
+  Source* source_;  // null when decoding
+  Topology topology_;
+  OpenEdges open_;
+  std::vector<uint8_t> degree_;      // per vertex: faces around it so far, at most 255
+  std::vector<uint8_t> has_border_;  // per vertex: an edge at it has no second face
+  std::vector<uint32_t> corners_;    // vertices of the face being coded, first edge = the gate reversed
+  std::vector<Models> models_;       // one element: too large for the stack
+  uint32_t last_step_ = kNew;
+  bool last_across_ = true;
+};
+
+template <class Coder>
+bool Walk<Coder>::face_across(uint32_t gate) {
+  const uint32_t a = start_of(gate), b = end_of(gate);
+  uint32_t wanted = 0;
+  if constexpr (!Coder::kDecodes)
+    wanted =
+        source_->edges.find(source_->order.vertex[b], source_->order.vertex[a], source_->face, source_->first_corner);
+  const bool across = coder_.bit(models_[0].face_across_left[degree(a)][has_border_[a]][last_across_],
+                                 models_[0].face_across_right[degree(b)][has_border_[b]][has_border_[a]], wanted) != 0;
+  last_across_ = across;
+  if (!across) {
+    open_.close(gate);
+    has_border_[a] = has_border_[b] = 1;
+  }
+  return across;
+}
+
+template <class Coder>
+uint32_t Walk<Coder>::code_size(uint32_t context) {
+  uint32_t wanted = 0;
+  if constexpr (!Coder::kDecodes) wanted = source_->faces[source_->face].count - 3;
+  return code_number(coder_, models_[0].face_size[context], wanted);
+}
+
+// The first face of a part that shares no edge with what was walked.
+template <class Coder>
+bool Walk<Coder>::code_seed() {
+  if constexpr (!Coder::kDecodes) {
+    source_->face = source_->edges.lowest_free();
+    source_->first_corner = 0;
+  }
+  const uint32_t size_less_3 = code_size(3);
+  const uint64_t room = header_.n_corners - topology_.n_corners();
+  if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
+  corners_.clear();
+  for (uint32_t k = 0; k < size_less_3 + 3; ++k)
+    if (!code_corner(k, kSeed)) return false;
+  finish_face(kNone);
+  return true;
+}
+
+// The face across the gate a -> b: its corners are b, a, then those that are coded.
+template <class Coder>
+bool Walk<Coder>::code_face(uint32_t gate) {
+  const uint32_t gate_size = topology_.face_size(topology_.corner_face[gate]);
+  const uint32_t size_less_3 = code_size(gate_size == 3 ? 0 : gate_size == 4 ? 1 : 2);
+  const uint64_t room = header_.n_corners - topology_.n_corners();
+  if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
+  corners_.assign({end_of(gate), start_of(gate)});
+  topology_.twin[gate] = topology_.n_corners();  // no longer open: finish_face() adds the other side
+  const uint32_t size = size_less_3 + 3;
+  for (uint32_t k = 2; k < size; ++k) {
+    const Place place = size == 3 ? kOnlyCorner : k == 2 ? kFirstOfSeveral : k + 1 < size ? kMiddle : kLastOfSeveral;
+    if (!code_corner(k, place)) return false;
+  }
+  finish_face(gate);
+  return true;
+}
+
+// Which of the ways to name a corner applies; `candidate` holds the vertices that kBefore .. kBeforeBefore stand for
+// (kNone: not available), `wanted` (encoder) the vertex or kNone for a new one.
+template <class Coder>
+Step Walk<Coder>::code_step(Place place, const std::array<uint32_t, kOld>& candidate, uint32_t wanted) {
+  const uint32_t before = candidate[kBefore], after = candidate[kAfter];
+  const uint32_t available = (before != kNone ? 1u : 0u) | (after != kNone ? 2u : 0u) | (before == after ? 4u : 0u);
+  const uint32_t left = corners_.empty() ? 0 : degree(corners_.back());
+  const uint32_t right = corners_.empty() ? 0 : degree(corners_.front());
+  AdaptiveBit* one = models_[0].step_left[place][available][left];
+  AdaptiveBit* two = models_[0].step_right[place][available][right][last_step_];
+  const bool may_be_new = topology_.n_vertices<header_.n_vertices, may_be_old = topology_.n_vertices> 0;
+  if (!may_be_old) return kNew;
+  if (may_be_new && coder_.bit(one[kNew], two[kNew], wanted == kNone ? 1 : 0) != 0) return kNew;
+  for (uint32_t step = kBefore; step < kOld; ++step) {
+    if (candidate[step] == kNone) continue;
+    if (std::find(&candidate[kBefore], &candidate[step], candidate[step]) != &candidate[step])
+      continue;  // asked already
+    if (coder_.bit(one[step], two[step], wanted == candidate[step] ? 1 : 0) != 0) return static_cast<Step>(step);
+  }
+  return kOld;
+}
+
+// Any vertex, by how many were added after it.
+template <class Coder>
+uint32_t Walk<Coder>::code_old_vertex(uint32_t wanted) {
+  const uint32_t newest = topology_.n_vertices - 1;
+  const uint32_t age = code_number(coder_, models_[0].old_vertex, newest - wanted);
+  return age <= newest ? newest - age : kNone;
+}
+
+// Corner k of the face, corners_ holding those before it. False: corrupt.
+template <class Coder>
+bool Walk<Coder>::code_corner(uint32_t k, Place place) {
+  if (coder_.failed()) return false;
+  std::array<uint32_t, kOld> candidate;
+  candidate.fill(kNone);
+  if (!corners_.empty()) {
+    candidate[kBefore] = open_.before(corners_.back());
+    candidate[kAfter] = open_.after(corners_.front());
+    if (candidate[kAfter] != kNone) candidate[kAfterAfter] = open_.after(candidate[kAfter]);
+    if (candidate[kBefore] != kNone) candidate[kBeforeBefore] = open_.before(candidate[kBefore]);
+  }
+  uint32_t wanted = kNone, mesh_vertex = kNone;
+  if constexpr (!Coder::kDecodes) {
+    mesh_vertex = source_->mesh_vertex(k);
+    wanted = source_->coded_vertex[mesh_vertex];
+  }
+  const Step step = code_step(place, candidate, wanted);
+  last_step_ = step;
+  uint32_t vertex;
+  if (step == kNew) {
+    if (topology_.n_vertices == header_.n_vertices) return false;
+    vertex = topology_.n_vertices++;
+    open_.add_vertex();
+    degree_.push_back(0);
+    has_border_.push_back(0);
+    if constexpr (!Coder::kDecodes) {
+      source_->coded_vertex[mesh_vertex] = vertex;
+      source_->order.vertex.push_back(mesh_vertex);
+    }
+  } else {
+    vertex = step == kOld ? code_old_vertex(wanted) : candidate[step];
+    if (vertex == kNone) return false;
+  }
+  corners_.push_back(vertex);
+  return true;
+}
+
+// corners_ becomes a face; its first edge is paired with the gate (kNone: a seed).
+template <class Coder>
+void Walk<Coder>::finish_face(uint32_t gate) {
+  const uint32_t first = topology_.n_corners(), face = topology_.n_faces();
+  topology_.corner_vertex.insert(topology_.corner_vertex.end(), corners_.begin(), corners_.end());
+  topology_.corner_face.resize(topology_.corner_vertex.size(), face);
+  topology_.twin.resize(topology_.corner_vertex.size(), kOpen);
+  topology_.face_first.push_back(topology_.n_corners());
+  if (gate != kNone) open_.pair(gate, first);
+  for (uint32_t corner = first; corner < topology_.n_corners(); ++corner) {
+    open_.add_corner(corner);
+    uint8_t& degree = degree_[start_of(corner)];
+    if (degree < 255) ++degree;
+  }
+  if constexpr (!Coder::kDecodes) {
+    source_->edges.take(source_->face);
+    source_->order.face.push_back(source_->face);
+    source_->order.first_corner.push_back(source_->first_corner);
+  }
+}
+
+}  // namespace
+
+CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
+                                      uint32_t n_vertices) {
+  ConnectivityHeader header;
+  header.n_faces = static_cast<uint32_t>(faces.size());
+  std::vector<uint8_t> used(n_vertices);
+  for (const Face& face : faces) {
+    header.n_corners += face.count;
+    for (uint32_t k = 0; k < face.count; ++k) used[indices[face.first + k]] = 1;
+  }
+  header.n_vertices = static_cast<uint32_t>(std::count(used.begin(), used.end(), uint8_t{1}));
+
+  CodedConnectivity coded;
+  RangeEncoder coder;
+  Source source(indices, faces, n_vertices);
+  Walk<RangeEncoder> walk(coder, header, &source);
+  PAC_ASSERT(walk.run());
+  coded.topology = walk.take();
+  coded.order = std::move(source.order);
+  coded.bytes = coder.finish();
+  return coded;
+}
+
+Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header) {
+  RangeDecoder coder(bytes);
+  Walk<RangeDecoder> walk(coder, header, nullptr);
+  if (!walk.run()) return Failure{Error::corrupt, 0, "connectivity is damaged"};
+  if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "connectivity does not end where the header says"};
+  return walk.take();
+}
+
+}  // namespace pac::geomcodec

@@ -1,0 +1,193 @@
+#include "geomcodec/container.h"
+
+#include <bit>
+#include <cmath>
+
+#include "base/checksum.h"
+
+namespace pac::geomcodec {
+namespace {
+
+constexpr uint8_t kMagic[3] = {'P', 'G', 'C'};
+
+enum Flag : uint8_t { kKeepsOrder = 1, kConstantColor = 2, kUnitGrid = 4, kOneStep = 8, kAllFlags = 15 };
+
+void put_varint(std::vector<uint8_t>& out, uint32_t value) {
+  for (; value >= 0x80; value >>= 7) out.push_back(static_cast<uint8_t>(value | 0x80));
+  out.push_back(static_cast<uint8_t>(value));
+}
+void put_u32(std::vector<uint8_t>& out, uint32_t value) {
+  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<uint8_t>(value >> shift));
+}
+
+// Sticky: past the end, or at a number that is too long, it delivers zeros and remembers where.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+  uint8_t u8() {
+    if (position_ >= bytes_.size()) return fail(Error::truncated, "header ends too early"), uint8_t{0};
+    return bytes_[position_++];
+  }
+  uint32_t u32() {
+    uint32_t value = 0;
+    for (int shift = 0; shift < 32; shift += 8) value |= uint32_t{u8()} << shift;
+    return value;
+  }
+  uint32_t varint() {
+    uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      const uint8_t byte = u8();
+      value |= uint64_t{byte & 0x7Fu} << shift;
+      if (byte >= 0x80) continue;
+      if (value > 0xFFFFFFFFu || (byte == 0 && shift > 0)) break;
+      return static_cast<uint32_t>(value);
+    }
+    fail(Error::corrupt, "malformed number in the header");
+    return 0;
+  }
+  uint32_t count() {
+    const uint32_t value = varint();
+    if (value > kMaxCount) fail(Error::corrupt, "count in the header is too large");
+    return value;
+  }
+  void fail(Error error, const char* text) {
+    if (ok_) failure_ = {error, position_, text};
+    ok_ = false;
+  }
+  bool ok() const { return ok_; }
+  const Failure& failure() const { return failure_; }
+  uint64_t position() const { return position_; }
+
+ private:
+  std::span<const uint8_t> bytes_;
+  size_t position_ = 0;
+  bool ok_ = true;
+  Failure failure_;
+};
+
+void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
+  header.position_bits = reader.u8();
+  if (header.position_bits < 1 || header.position_bits > 16)
+    reader.fail(Error::corrupt, "position bits are not in 1..16");
+  if ((flags & kUnitGrid) != 0) return;
+  for (float& origin : header.origin) origin = std::bit_cast<float>(reader.u32());
+  const int n_steps = (flags & kOneStep) != 0 ? 1 : 3;
+  for (int axis = 0; axis < n_steps; ++axis) header.step[axis] = std::bit_cast<float>(reader.u32());
+  if (n_steps == 1) header.step[1] = header.step[2] = header.step[0];
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(header.origin[axis]) || !std::isfinite(header.step[axis]) || !(header.step[axis] > 0))
+      reader.fail(Error::corrupt, "grid is not finite");
+}
+
+void parse_counts(ByteReader& reader, Header& header) {
+  header.n_used_vertices = reader.count();
+  header.n_isolated_vertices = reader.count();
+  header.n_faces = reader.count();
+  const uint64_t n_corners = uint64_t{3} * header.n_faces + reader.count();
+  header.highest_material = reader.varint();
+  if (n_corners > kMaxCount || uint64_t{header.n_used_vertices} + header.n_isolated_vertices > kMaxCount ||
+      header.n_used_vertices > n_corners || (header.n_faces > 0 && header.n_used_vertices == 0) ||
+      (header.n_faces == 0 && (n_corners > 0 || header.highest_material > 0)))
+    return reader.fail(Error::corrupt, "counts in the header contradict one another");
+  header.n_corners = static_cast<uint32_t>(n_corners);
+}
+
+}  // namespace
+
+std::vector<uint8_t> write_stream(const Header& header, const std::array<std::vector<uint8_t>, kSections>& sections,
+                                  uint64_t& header_bytes) {
+  bool unit_grid = true;
+  for (int axis = 0; axis < 3; ++axis)
+    unit_grid = unit_grid && std::bit_cast<uint32_t>(header.origin[axis]) == 0 && header.step[axis] == 1.0f;
+  const bool one_step = header.step[0] == header.step[1] && header.step[0] == header.step[2];
+
+  std::vector<uint8_t> out(kMagic, kMagic + 3);
+  out.push_back(kVersion);
+  out.push_back(static_cast<uint8_t>((header.keeps_order ? kKeepsOrder : 0) |
+                                     (header.constant_color ? kConstantColor : 0) | (unit_grid ? kUnitGrid : 0) |
+                                     (one_step && !unit_grid ? kOneStep : 0)));
+  out.push_back(static_cast<uint8_t>(header.position_bits));
+  if (!unit_grid) {
+    for (const float origin : header.origin) put_u32(out, std::bit_cast<uint32_t>(origin));
+    for (int axis = 0; axis < (one_step ? 1 : 3); ++axis) put_u32(out, std::bit_cast<uint32_t>(header.step[axis]));
+  }
+  put_varint(out, header.n_used_vertices);
+  put_varint(out, header.n_isolated_vertices);
+  put_varint(out, header.n_faces);
+  put_varint(out, header.n_corners - 3 * header.n_faces);
+  put_varint(out, header.highest_material);
+  if (header.constant_color) out.insert(out.end(), header.color, header.color + 4);
+  for (const std::vector<uint8_t>& section : sections) put_varint(out, static_cast<uint32_t>(section.size()));
+
+  uint32_t checksum = crc32(out);
+  for (const std::vector<uint8_t>& section : sections) checksum = crc32(section, checksum);
+  put_u32(out, checksum);
+  header_bytes = out.size();
+  for (const std::vector<uint8_t>& section : sections) out.insert(out.end(), section.begin(), section.end());
+  return out;
+}
+
+Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
+  ByteReader reader(bytes);
+  for (const uint8_t expected : kMagic)
+    if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
+  if (reader.u8() != kVersion && reader.ok()) return Failure{Error::unsupported, 3, "version of the stream is unknown"};
+  const uint8_t flags = reader.u8();
+  if ((flags & ~kAllFlags) != 0) return Failure{Error::unsupported, 4, "stream uses features that are unknown"};
+  if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
+    return Failure{Error::corrupt, 4, "flags contradict one another"};
+
+  ParsedStream parsed;
+  Header& header = parsed.header;
+  header.keeps_order = (flags & kKeepsOrder) != 0;
+  header.constant_color = (flags & kConstantColor) != 0;
+  parse_grid(reader, flags, header);
+  parse_counts(reader, header);
+  if (header.constant_color)
+    for (uint8_t& channel : header.color) channel = reader.u8();
+  uint64_t end = 0;
+  for (uint32_t& size : header.section_bytes) end += size = reader.count();
+  if ((header.constant_color && header.section_bytes[kColors] > 0) ||
+      (header.highest_material == 0 && header.section_bytes[kMaterials] > 0) ||
+      (!header.keeps_order && header.section_bytes[kOrder] > 0))
+    reader.fail(Error::corrupt, "section that the flags exclude");
+  const uint64_t checksum_offset = reader.position();
+  const uint32_t checksum = reader.u32();
+  if (!reader.ok()) return reader.failure();
+
+  parsed.header_bytes = reader.position();
+  end += parsed.header_bytes;
+  if (end > bytes.size()) return Failure{Error::truncated, bytes.size(), "stream ends too early"};
+  if (end < bytes.size()) return Failure{Error::corrupt, end, "bytes after the end of the stream"};
+  if (crc32(bytes.subspan(parsed.header_bytes), crc32(bytes.first(checksum_offset))) != checksum)
+    return Failure{Error::corrupt, checksum_offset, "checksum does not match"};
+  uint64_t offset = parsed.header_bytes;
+  for (uint32_t i = 0; i < kSections; ++i) {
+    parsed.section[i] = bytes.subspan(offset, header.section_bytes[i]);
+    offset += header.section_bytes[i];
+  }
+  return parsed;
+}
+
+Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
+  PAC_TRY(const ParsedStream parsed, parse_stream(bytes));
+  const Header& header = parsed.header;
+  StreamInfo info;
+  info.version = kVersion;
+  info.n_vertices = header.n_vertices();
+  info.n_faces = header.n_faces;
+  info.n_corners = header.n_corners;
+  info.n_materials = header.n_faces == 0 ? 0 : header.highest_material + 1;
+  info.position_bits = header.position_bits;
+  for (int axis = 0; axis < 3; ++axis) {
+    info.origin[axis] = header.origin[axis];
+    info.step[axis] = header.step[axis];
+  }
+  info.constant_color = header.constant_color;
+  info.keeps_order = header.keeps_order;
+  info.size = {parsed.header_bytes,           header.section_bytes[kConnectivity], header.section_bytes[kPositions],
+               header.section_bytes[kColors], header.section_bytes[kMaterials],    header.section_bytes[kOrder]};
+  return info;
+}
+
+}  // namespace pac::geomcodec

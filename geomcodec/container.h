@@ -1,0 +1,55 @@
+// The header of a stream and where its sections lie. FORMAT.md section 2.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "geomcodec/geomcodec.h"
+
+namespace pac::geomcodec {
+
+inline constexpr uint8_t kVersion = 1;
+
+enum Section : uint32_t { kConnectivity, kPositions, kColors, kMaterials, kOrder, kSections };
+
+struct Header {
+  bool keeps_order = false;
+  bool constant_color = false;
+  int position_bits = 16;
+  float origin[3] = {0, 0, 0};
+  float step[3] = {1, 1, 1};
+  uint32_t n_used_vertices = 0;      // those that faces use
+  uint32_t n_isolated_vertices = 0;  // the rest
+  uint32_t n_faces = 0;
+  uint32_t n_corners = 0;
+  uint32_t highest_material = 0;
+  uint8_t color[4] = {255, 255, 255, 255};  // with constant_color: everyone's
+  std::array<uint32_t, kSections> section_bytes = {};
+
+  uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
+};
+
+// Counts of vertices, faces, corners and section bytes may not exceed this.
+inline constexpr uint32_t kMaxCount = 0x7FFFFFFF;
+
+// Header, checksum, sections. `header_bytes` receives the size of the first two.
+std::vector<uint8_t> write_stream(const Header& header, const std::array<std::vector<uint8_t>, kSections>& sections,
+                                  uint64_t& header_bytes);
+
+struct ParsedStream {
+  Header header;
+  uint64_t header_bytes = 0;
+  std::array<std::span<const uint8_t>, kSections> section;  // into the caller's bytes
+  uint64_t section_offset(Section which) const {
+    uint64_t offset = header_bytes;
+    for (uint32_t i = 0; i < which; ++i) offset += section[i].size();
+    return offset;
+  }
+};
+// Fails with truncated, unsupported (version, flags), corrupt (magic, a field out of range, checksum, trailing bytes).
+Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes);
+
+}  // namespace pac::geomcodec

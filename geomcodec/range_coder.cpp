@@ -1,0 +1,37 @@
+#include "geomcodec/range_coder.h"
+
+namespace pac::geomcodec {
+
+// low_ passed 2^64: one more in the bytes already written. The coded number is below 1, so a byte below 0xFF exists.
+void RangeEncoder::carry() {
+  size_t i = bytes_.size();
+  while (i > 0 && ++bytes_[i - 1] == 0) --i;
+}
+
+void RangeEncoder::emit_word() {
+  for (int shift = 56; shift >= 32; shift -= 8) bytes_.push_back(static_cast<uint8_t>(low_ >> shift));
+  low_ <<= 32;
+  range_ <<= 32;
+}
+
+std::vector<uint8_t> RangeEncoder::finish() {
+  // The number with the fewest bytes in [low_, low_ + range_): the decoder appends zeros.
+  for (int n_bytes = 0; n_bytes <= 8; ++n_bytes) {
+    const uint64_t below = n_bytes == 0 ? ~uint64_t{0} : (uint64_t{1} << (64 - 8 * n_bytes) % 64) - 1;
+    const uint64_t mask = n_bytes == 8 ? 0 : below;
+    const uint64_t number = (low_ + mask) & ~mask;  // may wrap to 2^64 + ...: the distance from low_ still holds
+    if (number - low_ >= range_) continue;
+    if (number < low_) carry();
+    for (int i = 0; i < n_bytes; ++i) bytes_.push_back(static_cast<uint8_t>(number >> (56 - 8 * i)));
+    break;
+  }
+  return std::exchange(bytes_, {});
+}
+
+uint32_t RangeDecoder::read_word() {
+  uint32_t word = 0;
+  for (int i = 0; i < 4; ++i, ++position_) word = word << 8 | (position_ < bytes_.size() ? bytes_[position_] : 0u);
+  return word;
+}
+
+}  // namespace pac::geomcodec

@@ -1,0 +1,156 @@
+// Adaptive binary arithmetic coding: a range coder with a 64-bit interval that is renormalized by 32 bits, with carry
+// [Martin 1979, "Range encoding"]. Encoder and decoder have the same member functions, so that one template per syntax
+// element serves both: the encoder codes the value it is given and returns it, the decoder ignores the argument and
+// returns what it read. FORMAT.md section 3.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace pac::geomcodec {
+
+// The probability that a bit is 1, learned from the bits seen. The step towards each new bit is 1/(n + 1.5) at the n-th
+// bit and never below 1/kSlowest: running mean first (small meshes live on it), exponential forgetting later.
+struct AdaptiveBit {
+  static constexpr int kSlowest = 60;      // measured best of 24..128 on the meshes of bench/geomcodec.cpp
+  static constexpr int kCertain = 32;      // probabilities stay in [kCertain, 65536 - kCertain] / 65536
+  uint16_t probability_of_one = 1u << 15;  // / 65536
+  uint8_t step_index = 0;
+
+  void update(uint32_t bit);
+};
+
+// kStep[n] = round(65536 / (n + 1.5)), the last one standing for all later bits.
+inline constexpr std::array<uint16_t, AdaptiveBit::kSlowest> kStep = [] {
+  std::array<uint16_t, AdaptiveBit::kSlowest> steps{};
+  for (uint32_t n = 0; n < steps.size(); ++n)
+    steps[n] = static_cast<uint16_t>((2 * 131072 + (2 * n + 3)) / (2 * (2 * n + 3)));
+  return steps;
+}();
+
+inline void AdaptiveBit::update(uint32_t bit) {
+  const int32_t target = bit != 0 ? 65536 - kCertain : kCertain;
+  // |target - p| < 2^16 and the step is below 2^16: the product needs 33 bits. >> rounds towards minus infinity.
+  const int64_t change = (int64_t{target} - probability_of_one) * kStep[step_index] >> 16;
+  probability_of_one = static_cast<uint16_t>(probability_of_one + change);
+  if (step_index + 1 < kSlowest) ++step_index;
+}
+
+class RangeEncoder {
+ public:
+  static constexpr bool kDecodes = false;
+
+  uint32_t bit(AdaptiveBit& model, uint32_t bit) {
+    narrow(model.probability_of_one, bit);
+    model.update(bit);
+    return bit;
+  }
+  // One bit that two contexts predict: the mean of their probabilities; both learn.
+  uint32_t bit(AdaptiveBit& first, AdaptiveBit& second, uint32_t bit) {
+    narrow((uint32_t{first.probability_of_one} + second.probability_of_one) >> 1, bit);
+    first.update(bit);
+    second.update(bit);
+    return bit;
+  }
+  // The low `count` (0..16) bits of value, equally probable.
+  uint32_t raw(int count, uint32_t value) {
+    range_ >>= count;
+    add(range_ * value);
+    normalize();
+    return value;
+  }
+  bool failed() const { return false; }
+  uint64_t bytes_so_far() const { return bytes_.size(); }
+  // The shortest byte string that decodes to what was coded. Leaves the encoder unusable.
+  std::vector<uint8_t> finish();
+
+ private:
+  void narrow(uint32_t probability_of_one, uint32_t bit) {
+    const uint64_t ones = (range_ >> 16) * probability_of_one;  // the lower part of the interval stands for 1
+    if (bit != 0) {
+      range_ = ones;
+    } else {
+      add(ones);
+      range_ -= ones;
+    }
+    normalize();
+  }
+  void add(uint64_t offset) {
+    low_ += offset;
+    if (low_ < offset) carry();
+  }
+  void normalize() {
+    if (range_ >> 32 == 0) emit_word();
+  }
+  void carry();
+  void emit_word();
+
+  // The interval is [low_, low_ + range_), range_ >= 2^32 between calls; with 16-bit probabilities of at least 32 and
+  // raw() of at most 16 bits it never falls below 2^16 before normalize(), which multiplies it by 2^32.
+  uint64_t low_ = 0, range_ = ~uint64_t{0};
+  std::vector<uint8_t> bytes_;
+};
+
+// Sticky: past the end it reads zeros; failed() tells once more of them were needed than any encoder leaves out.
+class RangeDecoder {
+ public:
+  static constexpr bool kDecodes = true;
+
+  explicit RangeDecoder(std::span<const uint8_t> bytes) : bytes_(bytes) {
+    code_ = uint64_t{read_word()} << 32;
+    code_ |= read_word();
+  }
+  uint32_t bit(AdaptiveBit& model, uint32_t /*unused*/ = 0) {
+    const uint32_t bit = narrow(model.probability_of_one);
+    model.update(bit);
+    return bit;
+  }
+  uint32_t bit(AdaptiveBit& first, AdaptiveBit& second, uint32_t /*unused*/ = 0) {
+    const uint32_t bit = narrow((uint32_t{first.probability_of_one} + second.probability_of_one) >> 1);
+    first.update(bit);
+    second.update(bit);
+    return bit;
+  }
+  uint32_t raw(int count, uint32_t /*unused*/ = 0) {
+    range_ >>= count;
+    const uint64_t limit = (uint64_t{1} << count) - 1;
+    const uint64_t value = code_ / range_ < limit ? code_ / range_ : limit;
+    code_ -= value * range_;
+    normalize();
+    return static_cast<uint32_t>(value);
+  }
+  // More than the 8 bytes that an encoder may leave out were read past the end.
+  bool failed() const { return position_ > bytes_.size() + 8; }
+  // Everything was read and nothing else: what finish() wrote, to the byte.
+  bool ends_exactly() const { return !failed() && position_ >= bytes_.size(); }
+
+ private:
+  uint32_t narrow(uint32_t probability_of_one) {
+    const uint64_t ones = (range_ >> 16) * probability_of_one;
+    const uint32_t bit = code_ < ones ? 1 : 0;
+    if (bit != 0) {
+      range_ = ones;
+    } else {
+      code_ -= ones;
+      range_ -= ones;
+    }
+    normalize();
+    return bit;
+  }
+  void normalize() {
+    if (range_ >> 32 != 0) return;
+    range_ <<= 32;
+    code_ = code_ << 32 | read_word();
+  }
+  uint32_t read_word();
+
+  std::span<const uint8_t> bytes_;
+  uint64_t position_ = 0;  // bytes delivered, those past the end included
+  uint64_t code_ = 0, range_ = ~uint64_t{0};
+};
+
+}  // namespace pac::geomcodec
