@@ -2,6 +2,7 @@
 // still use the other way round. Every operation takes constant time whatever the mesh: searches look at kSearch edges.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -2,6 +2,7 @@
 // may use whatever lies around it and has a lower number. FORMAT.md section 5.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
