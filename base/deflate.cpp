@@ -45,14 +45,17 @@ struct Match {
   size_t distance = 0;
 };
 
-// Earlier occurrences of the next three bytes: a chain of positions for each hash value, newest first.
+// Earlier occurrences of the next four bytes: a chain of positions for each hash value, newest first. Deflate's
+// matches of three bytes are left out: they seldom pay, and chains over three bytes are several times longer.
 class MatchFinder {
  public:
   explicit MatchFinder(std::span<const uint8_t> in) : in_(in), head_(kHashSize, 0), previous_(kWindowSize, 0) {}
 
+  static constexpr size_t kMinLength = 4;
+
   // Makes `at` findable. Positions are stored plus one, so that 0 ends a chain.
   void insert(size_t at) {
-    if (at + kMinMatch > in_.size()) return;
+    if (at + kMinLength > in_.size()) return;
     uint32_t& head = head_[hash(at)];
     previous_[at % kWindowSize] = head;
     head = static_cast<uint32_t>(at + 1);
@@ -62,7 +65,7 @@ class MatchFinder {
   Match find(size_t at, size_t longer_than, int n_tries) const {
     Match best{0, 0};
     const size_t max_length = std::min(kMaxMatch, in_.size() - at);
-    size_t best_length = std::max(longer_than, kMinMatch - 1);
+    size_t best_length = std::max(longer_than, kMinLength - 1);
     if (max_length <= best_length) return best;
     const uint8_t* here = in_.data() + at;
     for (size_t link = head_[hash(at)]; link != 0 && n_tries > 0; --n_tries) {
@@ -79,8 +82,6 @@ class MatchFinder {
       }
       link = previous_[candidate % kWindowSize];
     }
-    // Three literals cost less than a far match of three bytes.
-    if (best.length == kMinMatch && best.distance > kTooFar) return {0, 0};
     return best;
   }
 
@@ -88,10 +89,10 @@ class MatchFinder {
   static constexpr int kHashBits = 15;
   static constexpr size_t kHashSize = size_t{1} << kHashBits;
   static constexpr size_t kNiceLength = 128;
-  static constexpr size_t kTooFar = 4096;
 
   size_t hash(size_t at) const {
-    const uint32_t word = uint32_t{in_[at]} | uint32_t{in_[at + 1]} << 8 | uint32_t{in_[at + 2]} << 16;
+    const uint32_t word =
+        uint32_t{in_[at]} | uint32_t{in_[at + 1]} << 8 | uint32_t{in_[at + 2]} << 16 | uint32_t{in_[at + 3]} << 24;
     return word * 0x9E3779B1u >> (32 - kHashBits);  // multiplicative, by 2^32 / golden ratio
   }
 
@@ -204,12 +205,42 @@ DynamicHeader make_dynamic_header(std::span<const uint32_t> literal_counts, std:
   return header;
 }
 
+// Tells short matches that pay from those whose literals would cost less: filtered pictures have many of the latter.
+class Prices {
+ public:
+  // Guesses from the first bytes; each finished block's code is a better guess for the next one.
+  explicit Prices(std::span<const uint8_t> in) {
+    std::array<uint32_t, 256> counts{};
+    for (uint8_t byte : in.first(std::min(in.size(), kSample))) ++counts[byte];
+    optimal_code_lengths(counts, kDeflateMaxBits, literal_bits_);
+  }
+  void learn(const PrefixCode& literals) {
+    std::copy_n(literals.lengths.begin(), literal_bits_.size(), literal_bits_.begin());
+  }
+  bool pays(std::span<const uint8_t> in, size_t at, const Match& match) const {
+    if (match.length > kAlwaysPays) return true;
+    int literal_bits = 0;
+    for (uint8_t byte : in.subspan(at, match.length))
+      literal_bits += literal_bits_[byte] != 0 ? literal_bits_[byte] : kRareLiteralBits;
+    const int match_bits = kMatchSymbolBits + kLengthExtraBits[length_index(match.length)] +
+                           kDistanceExtraBits[distance_index(match.distance)];
+    return match_bits < literal_bits;
+  }
+
+ private:
+  static constexpr size_t kSample = 32768;
+  static constexpr size_t kAlwaysPays = 16;
+  static constexpr int kMatchSymbolBits = 12;  // a length symbol and a distance symbol, typically
+  static constexpr int kRareLiteralBits = 13;
+  std::array<uint8_t, 256> literal_bits_{};
+};
+
 // Collects the tokens of one block, then writes it in the shortest of the three ways.
 class BlockWriter {
  public:
   static constexpr size_t kMaxTokens = 32768;
 
-  BlockWriter(std::span<const uint8_t> in, std::vector<uint8_t>& out) : in_(in), bits_(out) {
+  BlockWriter(std::span<const uint8_t> in, std::vector<uint8_t>& out) : in_(in), bits_(out), prices_(in) {
     tokens_.reserve(kMaxTokens);
   }
 
@@ -224,6 +255,7 @@ class BlockWriter {
     ++distance_counts_[distance_index(match.distance)];
     n_covered_ += match.length;
   }
+  const Prices& prices() const { return prices_; }
   bool full() const { return tokens_.size() >= kMaxTokens; }
 
   void flush(bool is_last) {
@@ -243,6 +275,7 @@ class BlockWriter {
       write_header(dynamic);
       write_body(dynamic.literals, dynamic.distances);
     }
+    prices_.learn(dynamic.literals);
     start_ += n_covered_;
     n_covered_ = 0;
     tokens_.clear();
@@ -313,6 +346,7 @@ class BlockWriter {
 
   std::span<const uint8_t> in_;
   LsbWriter bits_;
+  Prices prices_;
   std::vector<Token> tokens_;
   size_t start_ = 0;      // of the block in in_
   size_t n_covered_ = 0;  // bytes of in_ that its tokens stand for
@@ -322,19 +356,24 @@ class BlockWriter {
 
 // Lazy matching: a match is taken only if the next position has no longer one [RFC 1951 4].
 void compress(std::span<const uint8_t> in, std::vector<uint8_t>& out) {
-  constexpr int kTries = 96, kFewTries = 24;
+  constexpr int kTries = 8, kFewTries = 4;
   constexpr size_t kGoodLength = 8, kLazyLength = 16;
   MatchFinder finder(in);
   BlockWriter block(in, out);
+  const auto find = [&](size_t at, size_t longer_than, int n_tries) {
+    if (in.size() - at < MatchFinder::kMinLength) return Match{};
+    const Match match = finder.find(at, longer_than, n_tries);
+    return match.length != 0 && block.prices().pays(in, at, match) ? match : Match{};
+  };
   Match current;  // for position `at`, where it was already looked for
   bool looked = false;
   for (size_t at = 0; at < in.size();) {
-    if (!looked) current = in.size() - at >= kMinMatch ? finder.find(at, 0, kTries) : Match{};
+    if (!looked) current = find(at, 0, kTries);
     looked = false;
     finder.insert(at);
     Match next;
-    if (current.length != 0 && current.length < kLazyLength && in.size() - at > kMinMatch)
-      next = finder.find(at + 1, current.length, current.length >= kGoodLength ? kFewTries : kTries);
+    if (current.length != 0 && current.length < kLazyLength)
+      next = find(at + 1, current.length, current.length >= kGoodLength ? kFewTries : kTries);
     if (current.length == 0 || next.length != 0) {
       block.literal(in[at++]);
       looked = next.length != 0;

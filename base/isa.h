@@ -26,7 +26,8 @@ bool isa_is_supported(Isa isa);
 Isa best_isa();
 
 // For programs that take an --isa option, called once at their start before any kernel is used: from then on best_isa()
-// and kernels() answer `isa`. False, with nothing changed, where it is not built or not supported. Libraries never call it.
+// and kernels() answer `isa`. False, with nothing changed, where it is not built or not supported. Libraries never call
+// it.
 bool override_best_isa(Isa isa);
 
 }  // namespace pac
