@@ -1,4 +1,6 @@
 // Baseline sequential JPEG [ITU-T T.81], JFIF files: the public face of the codec.
+// Every function and object here: one object, one thread at a time; distinct objects are independent. Nothing keeps a
+// caller's pointer after it returns. The same bytes and pixels come out on every instruction set and compiler.
 #pragma once
 
 #include <array>
@@ -14,20 +16,26 @@
 
 namespace pac::jpeg {
 
+// ---- Quantization tables ------------------------------------------------------------------------------------------
+
 // Samples of Y a sample of Cb and Cr: the paper's "4:1:1" (4 Y to 1 Cr and 1 Cb) is today's 4:2:0.
 enum class Subsampling : uint8_t { yuv444, yuv422, yuv420, gray };
-enum class Huffman : uint8_t { standard, optimal };  // Annex K.3 tables, or two passes
+enum class Huffman : uint8_t { standard, optimal };  // Annex K.3 tables, or made for the image
 enum class Effort : uint8_t { fast, normal, best };
 enum class Tune : uint8_t { psnr, ssim, visual };
 
-// Steps of the uniform quantizers, natural (row) order, 1..255.
+// Steps of the uniform quantizers, natural (row) order, 1..255 where an encoder takes them (a decoder: 1..65535).
 using QuantTable = std::array<uint16_t, 64>;
 struct QuantTables {
   QuantTable luma{}, chroma{};
 };
 
-// Annex K.1 tables scaled as the IJG software does, for a real-valued quality in (0, 100].
+// Annex K.1 tables scaled as the IJG software does, for a real-valued quality in (0, 100] (outside: clamped).
+// scale = q < 50 ? 5000 / q : 200 - 2 q; step = floor((base * scale + 50) / 100) within 1..255. Integer qualities
+// give exactly the IJG's (force_baseline) tables.
 QuantTables annex_k_tables(double quality);
+
+// ---- Encoding -----------------------------------------------------------------------------------------------------
 
 struct EncodeOptions {
   double quality = 75;                // (0, 100], IJG scale, real-valued
@@ -40,23 +48,59 @@ struct EncodeOptions {
   Isa isa = best_isa();
 };
 
-// A complete JFIF file. Image sides 1..65535.
+// A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).
 Result<std::vector<uint8_t>> encode(ConstRgbView image, const EncodeOptions& options = {});
+// The same of one component; options.subsampling is taken as gray.
 Result<std::vector<uint8_t>> encode_gray(PlaneView<const uint8_t> image, const EncodeOptions& options = {});
+
+// ---- Decoding -----------------------------------------------------------------------------------------------------
 
 struct ComponentInfo {
   uint8_t id = 0, horizontal_sampling = 1, vertical_sampling = 1, quant_table = 0;
 };
-struct Info {
-  int width = 0, height = 0;
-  std::vector<ComponentInfo> components;
-  // ... the jpeg/ owner completes this: markers with offsets, tables, estimated quality, metadata
+
+// How the components become RGB (the IJG software's rule, see README.md).
+enum class ColorModel : uint8_t { gray, ycc, rgb, cmyk, ycck, unknown };
+
+struct MarkerInfo {
+  uint8_t code = 0;         // second byte of the marker: 0xD8 = SOI, 0xDB = DQT, ...
+  uint64_t offset = 0;      // of its 0xFF, bytes from the start of the file
+  uint32_t size_bytes = 0;  // of the parameters, without the length field; 0 for markers that have none
 };
 
-// Headers only; never touches entropy-coded data.
+struct ByteRange {
+  uint64_t offset = 0, size = 0;  // bytes of the file
+};
+
+struct Info {
+  int width = 0, height = 0;  // pixels
+  int precision_bits = 8;
+  uint8_t start_of_frame = 0;  // 0xC0 baseline, 0xC1 extended sequential, 0xC2 progressive, ...
+  std::vector<ComponentInfo> components;
+  ColorModel color = ColorModel::unknown;
+  const char* unsupported = nullptr;  // why decode() will refuse this file although it is legal, or null
+
+  std::vector<MarkerInfo> markers;  // SOI to the first SOS, in file order
+  std::array<std::optional<QuantTable>, 4> quant_tables;
+  double estimated_quality = 0;  // real-valued IJG quality whose Annex K luma table comes nearest; 0: no table
+  int restart_interval_mcus = 0;
+  bool default_huffman = false;  // no DHT at all before the scan: Annex K.3 tables are meant, as in motion JPEG
+
+  bool jfif = false;
+  int density_units = 0, density_x = 1, density_y = 1;  // JFIF: 0 aspect ratio only, 1 dots per inch, 2 per cm
+  int adobe_transform = -1;                             // APP14: 0, 1 YCbCr, 2 YCCK; -1: no such marker
+  int exif_orientation = 0;                             // 1..8; 0: not stated. Never applied by decode()
+  bool has_icc_profile = false;
+  std::vector<ByteRange> comments;  // texts of COM segments
+  uint64_t header_bytes = 0;        // offset of the first entropy-coded byte
+};
+
+// Headers only, up to and with the first SOS; never touches entropy-coded data. Also reads files that decode() refuses
+// as unsupported. Errors: truncated, corrupt, limit_exceeded (with the offset of the segment at fault).
 Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits = {});
 
-// RGB of any file that read_info accepts (gray is spread to three channels).
+// RGB of a complete, sound file (gray is spread to three channels). Errors: truncated, corrupt, unsupported,
+// limit_exceeded; then no picture at all.
 Result<RgbImage> decode(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
 
 }  // namespace pac::jpeg

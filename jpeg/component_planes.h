@@ -1,0 +1,49 @@
+// Second half of the decoder: component samples -> upsampled rows -> RGB rows.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/image.h"
+#include "base/kernels/kernels.h"
+#include "jpeg/frame.h"
+#include "jpeg/jpeg.h"
+
+namespace pac::jpeg {
+
+// Samples of all components, whole MCUs. Holds either the whole image or, when a file has one scan of all components, a
+// ring of two MCU rows: upsampling a row needs one neighbor above and below, never more.
+class ComponentPlanes {
+ public:
+  // Bytes that reset() will take, to be checked against Limits before.
+  static uint64_t size_bytes(const Frame& frame, bool whole_image);
+  // Keeps its buffers from image to image when they suffice.
+  void reset(const Frame& frame, bool whole_image, ColorModel color, const Kernels& kernels);
+
+  // Where the 8 rows of block row `by` of component c start, and how far apart rows are.
+  uint8_t* block_row(int c, int by) { return row(c, 8 * by); }
+  ptrdiff_t stride(int c) const { return planes_[c].stride; }
+
+  // Writes RGB rows [y_begin, y_end) of the image to out (row y at out.row(y)).
+  void write_rgb(int y_begin, int y_end, RgbView out);
+
+ private:
+  enum class Upsampling : uint8_t { none, h2v1, h2v2, h1v2, nearest };
+  struct Plane {
+    std::vector<uint8_t> samples;
+    ptrdiff_t stride = 0;
+    int n_rows = 0;  // that `samples` holds; image row y sits in row y % n_rows
+    Upsampling upsampling = Upsampling::none;
+  };
+  uint8_t* row(int c, int y) { return planes_[c].samples.data() + (y % planes_[c].n_rows) * planes_[c].stride; }
+  Upsampling choose(const Component& c) const;
+  const uint8_t* full_row(int c, int y);
+
+  Frame frame_;
+  ColorModel color_ = ColorModel::unknown;
+  const Kernels* kernels_ = nullptr;
+  Plane planes_[kMaxComponents];
+  std::vector<uint8_t> upsampled_[kMaxComponents];  // one row each
+};
+
+}  // namespace pac::jpeg

@@ -1,0 +1,64 @@
+// Entropy coding [T.81 F.1.2]: quantized blocks -> tokens (a Huffman symbol with its extra bits) -> histogram -> bits.
+// Tokens let the optimal tables be made without transforming or scanning any block twice.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "jpeg/byte_sink.h"
+#include "jpeg/frame.h"
+#include "jpeg/huffman.h"
+
+namespace pac::jpeg {
+
+// The four tables of a scan: DC and AC, for the first component (0) and the others (1).
+enum TableIndex : uint32_t { kDc0 = 0, kAc0 = 1, kDc1 = 2, kAc1 = 3 };
+constexpr int kTableCount = 4;
+
+// extra bits in 0..15 (16 bits; DC and AC need at most 11), symbol in 16..23, TableIndex in 24..25, or bit 31: RSTm
+// with m in the low bits.
+using Token = uint32_t;
+constexpr Token kRestartToken = 0x80000000u;
+constexpr size_t kMaxTokensInBlock = 66;  // DC, 63 AC, and EOB; fewer AC make room for each ZRL
+
+struct Histogram {
+  uint32_t count[kTableCount][256] = {};
+};
+
+// The tokens of one block. levels: 64 in zigzag order; bit k of `nonzero`: level k is not 0. dc_difference: DIFF,
+// within
+// +-2047. |AC| <= 1023. dc_table: kDc0 or kDc1 (its AC table follows). Returns the end of what it wrote.
+Token* tokenize_block(const int16_t* levels, uint64_t nonzero, int dc_difference, uint32_t dc_table, Token* out);
+
+void add_to_histogram(const Token* begin, const Token* end, Histogram& histogram);
+
+struct ScanTables {
+  HuffmanSpec spec[kTableCount];
+};
+ScanTables standard_tables();
+ScanTables optimal_tables(const Histogram& histogram);
+
+// Writes tokens as bits with the 0xFF bytes stuffed [T.81 B.1.1.5]. Call finish() at the end of the scan.
+class ScanWriter {
+ public:
+  ScanWriter(const ScanTables& tables, ByteSink& sink);
+  void write(const Token* begin, const Token* end);
+  // Pads the last byte with ones [T.81 F.1.2.3].
+  void finish();
+
+ private:
+  static constexpr size_t kChunk = 16384;
+  void put(uint32_t bits, int count);
+  void flush_to_byte();
+  void flush_chunk();
+
+  uint32_t code_and_length_[kTableCount * 256];
+  ByteSink& sink_;
+  uint64_t pending_ = 0;  // the low n_pending_ bits wait
+  int n_pending_ = 0;     // < 8 * 5 between puts
+  size_t n_chunk_ = 0;
+  uint8_t chunk_[kChunk + 16];
+};
+
+}  // namespace pac::jpeg
