@@ -33,7 +33,7 @@ double mean_square_error(const pac::RgbImage& a, const pac::RgbImage& b) {
 }
 
 TEST_CASE("decode(encode(image)) is close to the image for every subsampling, Huffman mode, restart and odd size") {
-  for (const auto [width, height] : {std::pair{1, 1}, {3, 5}, {16, 16}, {17, 33}, {100, 41}}) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {16, 16}, {17, 33}, {100, 41}}) {
     const pac::RgbImage image = smooth_image(width, height);
     for (const auto subsampling : {Subsampling::yuv444, Subsampling::yuv422, Subsampling::yuv420}) {
       for (const auto huffman : {Huffman::standard, Huffman::optimal}) {
