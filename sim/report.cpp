@@ -191,7 +191,7 @@ Text table_section(const Report& report) {
   for (const Table1Column& column : table.columns)
     for (const Table1Claim& claim : column.claims) {
       const bool same = claim.paper_holds == claim.ours_holds;
-      const Text paper = claim.paper_holds ? "It holds in the paper's table" : "It does not hold in the paper's table";
+      const Text paper = claim.paper_holds ? "It holds in the paper’s table" : "It does not hold in the paper’s table";
       const Text ours = claim.ours_holds ? "holds in ours" : "does not hold in ours";
       claims.push_back({same ? Verdict::agrees : Verdict::against, Text(claim.text) + " (" + column.scene + ")",
                         paper + (same ? ", and " : ", but ") + ours + "."});

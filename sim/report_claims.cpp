@@ -107,7 +107,7 @@ ReportFinding equal_quality_claim(const FigureSet& room) {
       "Judged by eye at equal quality, figure 2j against 2d, polygon assistance compresses the room 3 times further "
       "(section 4.1).";
   const auto sentence = [](const char* score, const std::optional<double>& gain) {
-    return gain ? "at equal " + std::string(score) + " " + decimal_text(*gain, 2) + " times"
+    return gain ? std::string("at equal ") + score + " " + decimal_text(*gain, 2) + " times"
                 : std::string("no equal ") + score + " on the curves";
   };
   finding.ours = "At the SSIM and the rms of the image-based arm at q 15: " + sentence("SSIM", room.equal_ssim_gain) +

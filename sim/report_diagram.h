@@ -8,7 +8,7 @@ inline constexpr char kFlowDiagram[] = R"svg(
 <title id="flow-t">Figure 1: flow of data</title>
 <desc id="flow-d">The server renders the scene in high and low quality, subtracts, codes the difference and sends it. The client
 decodes it, renders the matching low-quality picture, adds both and displays the composite. Sending the low-quality model is optional.</desc>
-<defs><marker id="head" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="8" markerHeight="8" orient="auto"><path class="arrow" d="M0 0L8 4L0 8z"/></marker></defs>
+<defs><marker id="head" viewBox="0 0 8 8" refX="7" refY="4" markerUnits="userSpaceOnUse" markerWidth="9" markerHeight="9" orient="auto"><path class="arrow" d="M0 0L8 4L0 8z"/></marker></defs>
 <rect class="machine" x="4" y="34" width="476" height="258" rx="8"/><rect class="machine" x="546" y="34" width="290" height="258" rx="8"/>
 <text class="head" x="242" y="22">Server</text><text class="head" x="691" y="22">Client</text><text class="small" x="513" y="22">network</text>
 <rect x="20" y="64" width="104" height="52" rx="4"/><text x="72" y="87">high-quality</text><text x="72" y="104">model</text>

@@ -112,12 +112,12 @@ void fit_axes(const Plot& plot, Axis& x, Axis& y) {
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* style) {
-  return "<line class=\"" + std::string(style) + "\" x1=\"" + text_of(x1, 1) + "\" y1=\"" + text_of(y1, 1) +
+  return std::string("<line class=\"") + style + "\" x1=\"" + text_of(x1, 1) + "\" y1=\"" + text_of(y1, 1) +
          "\" x2=\"" + text_of(x2, 1) + "\" y2=\"" + text_of(y2, 1) + "\"/>";
 }
 
 std::string label(double x, double y, const char* style, const std::string& text, const char* attributes = "") {
-  return "<text class=\"" + std::string(style) + "\" x=\"" + text_of(x, 1) + "\" y=\"" + text_of(y, 1) + "\"" +
+  return std::string("<text class=\"") + style + "\" x=\"" + text_of(x, 1) + "\" y=\"" + text_of(y, 1) + "\"" +
          attributes + ">" + html_escaped(text) + "</text>";
 }
 
@@ -184,8 +184,9 @@ std::string draw_marks(const Plot& plot, const Axis& x) {
 std::string marker(double x, double y, size_t series_index) {
   const std::string cx = text_of(x, 1), cy = text_of(y, 1);
   if (series_index % 2 == 0)
-    return "<rect x=\"" + text_of(x - 3.2, 1) + "\" y=\"" + text_of(y - 3.2, 1) + "\" width=\"6.4\" height=\"6.4\"/>";
-  return "<circle cx=\"" + cx + "\" cy=\"" + cy + "\" r=\"3.7\"/>";
+    return std::string("<rect x=\"") + text_of(x - 3.2, 1) + "\" y=\"" + text_of(y - 3.2, 1) +
+           "\" width=\"6.4\" height=\"6.4\"/>";
+  return std::string("<circle cx=\"") + cx + "\" cy=\"" + cy + "\" r=\"3.7\"/>";
 }
 
 std::string draw_series(const Plot& plot, const Axis& x, const Axis& y) {
@@ -196,7 +197,8 @@ std::string draw_series(const Plot& plot, const Axis& x, const Axis& y) {
     for (const PlotPoint& point : series.points) {
       if (!is_drawable(plot, point)) continue;
       const double px = x.place(point.x), py = y.place(point.y);
-      path += (path.empty() ? "M" : "L") + text_of(px, 1) + " " + text_of(py, 1);
+      path += path.empty() ? "M" : "L";
+      path += text_of(px, 1) + " " + text_of(py, 1);
       markers += "<g class=\"point\">" + marker(px, py, i) + "<title>" + html_escaped(point.label) + "</title></g>";
     }
     if (path.empty()) continue;
@@ -222,12 +224,12 @@ std::string legend(const Plot& plot) {
 std::string plot_svg(const Plot& plot) {
   Axis x{.from = kLeft, .to = kRight}, y{.from = kBottom, .to = kTop};
   fit_axes(plot, x, y);
-  std::string svg = "<svg class=\"plot\" viewBox=\"0 0 " + text_of(kWidth, 0) + " " + text_of(kHeight, 0) +
+  std::string svg = std::string("<svg class=\"plot\" viewBox=\"0 0 ") + text_of(kWidth, 0) + " " + text_of(kHeight, 0) +
                     "\" role=\"img\" aria-labelledby=\"" + plot.id + "-t " + plot.id + "-d\"><title id=\"" + plot.id +
                     "-t\">" + html_escaped(plot.title) + "</title><desc id=\"" + plot.id + "-d\">" +
                     html_escaped(plot.description) + "</desc>";
   svg += x_axis(plot, x) + top_axis(plot, x) + y_axis(plot, y);
-  svg += "<rect class=\"frame\" x=\"" + text_of(kLeft, 1) + "\" y=\"" + text_of(kTop, 1) + "\" width=\"" +
+  svg += std::string("<rect class=\"frame\" x=\"") + text_of(kLeft, 1) + "\" y=\"" + text_of(kTop, 1) + "\" width=\"" +
          text_of(kRight - kLeft, 1) + "\" height=\"" + text_of(kBottom - kTop, 1) + "\"/>";
   svg += draw_marks(plot, x) + draw_series(plot, x, y) + legend(plot);
   return svg + "</svg>\n";

@@ -33,6 +33,7 @@ h2 .number { display: block; font: 600 .82rem/1.4 var(--sans); letter-spacing: .
   color: var(--soft); margin-bottom: .35rem; }
 h3 { font-size: 1.2rem; margin: 2.2rem 0 .8rem; }
 section { padding: 3.6rem 0 1.2rem; border-top: 1px solid var(--rule); margin-top: 3rem; }
+main > section:first-child { border-top: 0; margin-top: 0; }
 code, pre { font-family: ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu Sans Mono", monospace; font-size: .86em; }
 pre { background: var(--faint); padding: .9rem 1.1rem; border-radius: 6px; overflow-x: auto; line-height: 1.5; }
 .skip { position: absolute; left: -99rem; }
