@@ -62,8 +62,8 @@ class Renderer {
                              const RenderTargets& targets);
 
   // H, L and D = 127 + (H-L)/2 of a split that shares the geometry, in one traversal [Levoy95 s.4.1 footnote]:
-  // clipping, setup, visibility once. `high` and `low` must have equal samples. Bits equal two render() calls and a
-  // subtraction.
+  // clipping, setup, visibility once. `high` and `low` must have equal samples and cull_back_faces. Bits equal two
+  // render() calls and a subtraction.
   Result<RenderStats> render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,
                                   const RenderQuality& low, const RenderTargets& high_targets, RgbView low_color,
                                   RgbView difference);

@@ -1,6 +1,7 @@
 // What is drawn: meshes with materials, textures and lights, and the camera that looks at them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -15,12 +16,32 @@ namespace pac::raster {
 enum class Wrap : uint8_t { repeat, clamp };
 enum class Filter : uint8_t { nearest, bilinear, trilinear };
 
-// A texture image (RGBA, sRGB-encoded) with its mip chain: level 0 as loaded, each next one half as large (rounded
-// down, at least 1), down to 1x1. The 1x1 level is the texture's mean color: it replaces the texture where texturing is
-// off.
+// A texture image (RGBA, sRGB-encoded; alpha is carried but not used) with its mip chain: level 0 as loaded, each next
+// one half as large (rounded down, at least 1), box-filtered, down to 1x1. The 1x1 level is the texture's mean color:
+// it replaces the texture where texturing is off. Made by make_texture().
 struct Texture {
+  struct Level {
+    int width = 0, height = 0;
+    int pitch = 0;      // width + 1: each row ends with a copy of its first texel, so that a pair is one load
+    size_t offset = 0;  // of the first texel
+  };
   std::string name;
-  std::vector<RgbaImage> levels;
+  std::vector<Level> levels;
+  std::vector<uint8_t> texels;  // 4 bytes each, all levels
+
+  bool empty() const { return levels.empty(); }
+  int width() const { return empty() ? 0 : levels[0].width; }
+  int height() const { return empty() ? 0 : levels[0].height; }
+  // Valid as long as the texture lives unchanged.
+  ConstRgbaView level(size_t i) const {
+    return {texels.data() + 4 * levels[i].offset, levels[i].width, levels[i].height, ptrdiff_t{4} * levels[i].pitch};
+  }
+  // RGBA; mid grey for an empty texture.
+  std::array<uint8_t, 4> mean_color() const {
+    if (empty()) return {128, 128, 128, 255};
+    const uint8_t* mean = level(levels.size() - 1).data;
+    return {mean[0], mean[1], mean[2], mean[3]};
+  }
 };
 
 // How a surface looks. All colors are display-referred (sRGB-encoded) in [0, 1]; see raster/README.md.
@@ -29,13 +50,13 @@ struct Material {
   glm::vec3 ambient{0.2f};
   glm::vec3 diffuse{0.8f};
   glm::vec3 specular{0.0f};
-  int shininess = 1;  // exponent of the specular lobe, 1..1000
+  int shininess = 1;  // exponent of the specular lobe, 0..1000 (clamped)
   glm::vec3 emission{0.0f};
   int32_t texture = -1;  // index into Scene::textures; -1 = none
   Wrap wrap = Wrap::repeat;
   Filter filter = Filter::trilinear;
   bool lit = true;        // false: vertex colors are final (radiosity, dicing) and `lights` are ignored
-  bool two_sided = true;  // false: back faces are not drawn
+  bool two_sided = true;  // false: back faces are not drawn where RenderQuality::cull_back_faces
 };
 
 struct Light {
@@ -62,12 +83,14 @@ struct Camera {
   glm::vec3 eye{0.0f};              // world position, for specular lighting
 };
 
-// Right-handed look-at and perspective, by exact_math: same bits on every machine. fov is vertical; aspect =
-// width/height.
+// Right-handed look-at and perspective, by exact_math: same bits on every machine. fov is vertical, in (0, pi); aspect
+// = width/height. Arguments that make no camera (eye = target, near >= far, up along the view, ...) give a singular or
+// non-finite matrix, which render() refuses.
 Camera make_camera(glm::vec3 eye, glm::vec3 target, glm::vec3 up, float fov_y_rad, float aspect, float near_plane,
                    float far_plane);
 
-// Box-filters level 0 down to 1x1. `image` must not be empty.
-Texture make_texture(std::string name, RgbaImage image);
+// Copies the image and box-filters it down to 1x1, each level from the unrounded one above it. An empty image makes an
+// empty texture, which draws as mid grey.
+Texture make_texture(std::string name, const RgbaImage& image);
 
 }  // namespace pac::raster

@@ -1,4 +1,10 @@
-// Rasterization inside one tile: coverage from edge functions, depth test, interpolation, texture filter.
+// Rasterization inside one tile: coverage and depth, interpolation, lighting, texture filter, accumulation of samples.
+//
+// Positions are 24.8 fixed-point pixels, x to the right and y down; pixel (px, py) covers [256 px, 256 px + 256) x ....
+// Lanes: one lane is one sample to shade (or one corner to light). Arrays of lanes are "rows" of kBatchLanes floats,
+// 32-byte aligned; kernels work on whole groups of 8 lanes, so unused lanes of the last group must hold readable
+// values. Every float result is a fixed sequence of IEEE single-precision + - * / sqrt and comparisons in each lane: no
+// operation mixes lanes, so the width of a vector register cannot matter.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +12,111 @@
 
 namespace pac {
 
-struct TileKernels {};
+constexpr int kTileSize = 32;     // pixels a side; a tile's buffers are row-major, kTileSize wide, 32-byte aligned
+constexpr int kBatchLanes = 256;  // lanes that one call shades; a multiple of 8
+constexpr int kBatchPacks = kBatchLanes / 8;
+constexpr int kMaxMipLevels = 16;     // sides up to 32768
+constexpr int kMaxAttributes = 11;    // colour 3, texture coordinates 2, normal 3, position 3
+constexpr int kMaxKernelLights = 16;  // lights that one scene may have
+
+// A triangle on the sample grid. Corners are ordered so that area2 > 0. Edge function i is opposite to corner i and
+// vanishes on that edge; with (X, Y) = sample - corner 0:
+//   E1 = a[1] X + b[1] Y,  E2 = a[2] X + b[2] Y,  E0 = area2 - E1 - E2,
+// exactly, in units of 2^-16 square pixels. |a|, |b| <= 2^23 (guard band), |E| < 2^52.
+struct RasterTriangle {
+  int32_t x0, y0;                      // corner 0
+  int32_t a[3], b[3];                  // change of E_i by 1/256 pixel
+  int32_t min_x, min_y, max_x, max_y;  // pixels that some sample position of which may be inside; inclusive
+  int64_t area2;                       // E0 + E1 + E2 > 0
+  float z0, dzdx, dzdy, z_min, z_max;  // window depth: z0 + dzdy Y + dzdx X, clamped to the corners' range
+  float w[3];                          // 1/w of the corners divided by the largest of them
+  int32_t shift;                       // smallest k >= 0 with area2 >> k < 2^31
+  uint8_t exclude[3];                  // 1 where a sample on edge i is outside (not a top or left edge)
+  uint32_t id;                         // 1 + face number
+  uint32_t state[2];                   // per rendering: how it is shaded
+  const float* attributes[2];          // per rendering: a0, a1 - a0, a2 - a0 for each attribute
+};
+
+// The sample of the tile's pixel (0, 0): 256 * tile origin + sample offset.
+struct SamplePosition {
+  int32_t x, y;
+};
+
+// Eight neighbouring samples of one row of a tile, those in `mask` (bit k = lane k) belonging to one triangle.
+struct LanePack {
+  const RasterTriangle* triangle;
+  uint8_t x, y;  // of lane 0 in the tile; x is a multiple of 8
+  uint8_t mask;
+};
+
+// Rows that interpolate() writes. LOD needs the texture's size; null `lod` where there is no texture.
+struct InterpolateTarget {
+  int rendering;     // 0 or 1: which RasterTriangle::attributes
+  int n_attributes;  // attribute j goes to rows + j * kBatchLanes
+  float* rows;
+  float* lod;           // log2 of the larger of the lengths in level-0 texels of d(uv)/dx and d(uv)/dy, plus lod_bias
+  int uv;               // number of the attribute u; v follows
+  float width, height;  // of level 0
+  float lod_bias;
+};
+
+// A mip chain. Texels are 4 bytes RGBA. Each row of a level is followed by a copy of its first texel, so that two
+// horizontal neighbours are one 8-byte load.
+struct TextureSampler {
+  const uint8_t* texels;
+  int32_t level_count;            // 1..kMaxMipLevels
+  int32_t filter;                 // 0 nearest, 1 bilinear (both: nearest level), 2 trilinear
+  int32_t clamp;                  // 0: repeat
+  int32_t offset[kMaxMipLevels];  // first texel of the level
+  int32_t width[kMaxMipLevels], height[kMaxMipLevels];
+  int32_t pitch[kMaxMipLevels];  // width + 1
+};
+
+// Colors in units where 255 is full intensity; everything finite, magnitudes below 2^20.
+struct KernelLight {
+  float vector[3];      // directional: unit vector towards the light; point: its position
+  float diffuse[3];     // light color * material's diffuse * 255
+  float specular[3];    // light color * material's specular * 255
+  float inverse_range;  // point: intensity 1 / (1 + (distance * inverse_range)^2)
+  int32_t is_point;
+};
+struct LightingParameters {
+  float eye[3];
+  float emission[3];
+  float ambient[3];
+  int32_t shininess;     // 0..65535
+  int32_t has_specular;  // 0: specular rows are not written
+  int32_t light_count;
+  KernelLight lights[kMaxKernelLights];
+};
+
+// One table of operations. See tile_scalar.cpp for the definition of each on the last bit.
+struct TileKernels {
+  // Depth-tests and writes the samples of the tile inside `triangle`: where z < depth: depth = z, ids = id.
+  // depth, ids: kTileSize * kTileSize.
+  void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
+
+  // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too.
+  void (*interpolate)(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target);
+
+  // Blinn-Phong lighting of n lanes (rounded up to 8): color rows[0..2] (255 = full) become
+  // emission + color/255 * (ambient + sum diffuse N.L); specular rows get sum specular (N.H)^shininess.
+  // normal: 3 rows, any length (zero or not finite: towards the eye); position: 3 rows.
+  void (*light)(const LightingParameters& parameters, int n, const float* normal, const float* position, float* color,
+                float* specular);
+
+  // Filtered texels of n lanes (rounded up to 8), u and v finite: rows of red, green and blue in [0, 255].
+  void (*sample_texture)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,
+                         float* texels);
+
+  // Rounds color * texel / 255 + specular to 0..255 and adds it minus `background` to the accumulators of the pixels in
+  // the masks. texels, specular: 3 rows or null. sums: 3 planes of kTileSize^2; modulo 2^16.
+  void (*accumulate)(const LanePack* packs, int n, const float* color, const float* texels, const float* specular,
+                     const uint8_t background[3], uint16_t* sums);
+
+  // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
+  void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);
+};
 
 // One per instruction set: overwrites the entries that it improves.
 void fill_tile_scalar(TileKernels& table);

@@ -1,0 +1,148 @@
+#include "raster/renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/kernels/kernels.h"
+#include "base/parallel.h"
+#include "raster/draw_list.h"
+#include "raster/sample_pattern.h"
+#include "raster/surface.h"
+#include "raster/tile_painter.h"
+
+namespace pac::raster {
+
+struct Renderer::State {
+  int width, height;
+  const Kernels* kernels;
+  ThreadPool pool;
+  DrawList draw_list;
+  std::vector<Surface> surfaces[2];
+  std::vector<std::unique_ptr<TilePainter>> painters;  // one a thread
+
+  Result<RenderStats> draw(const Scene& scene, const Camera& camera, const RenderQuality* const qualities[2],
+                           PaintInput& input);
+};
+
+namespace {
+
+constexpr int kMaxSide = 32768;  // the guard band and exact edge functions end there
+
+template <class T, int kChannels>
+bool fits(const ImageView<T, kChannels>& view, int width, int height) {
+  return view.data == nullptr || (view.width == width && view.height == height);
+}
+
+// Finite, and not (nearly) singular: |det| > 1e-20 * product of the rows' lengths.
+bool is_usable(const glm::mat4& m) {
+  double a[4][4], scale = 1;
+  for (int row = 0; row < 4; ++row) {
+    double squared = 0;
+    for (int column = 0; column < 4; ++column) {
+      a[row][column] = m[column][row];
+      if (!std::isfinite(a[row][column])) return false;
+      squared += a[row][column] * a[row][column];
+    }
+    scale *= std::sqrt(squared);
+  }
+  const auto minor2 = [&](int r, int i, int j) { return a[r][i] * a[r + 1][j] - a[r][j] * a[r + 1][i]; };
+  // Laplace expansion along the first two rows.
+  const double det = minor2(0, 0, 1) * minor2(2, 2, 3) - minor2(0, 0, 2) * minor2(2, 1, 3) +
+                     minor2(0, 0, 3) * minor2(2, 1, 2) + minor2(0, 1, 2) * minor2(2, 0, 3) -
+                     minor2(0, 1, 3) * minor2(2, 0, 2) + minor2(0, 2, 3) * minor2(2, 0, 1);
+  return std::fabs(det) > 1e-20 * scale;
+}
+
+uint8_t to_byte(float unit) {
+  if (!(unit > 0)) return 0;
+  return static_cast<uint8_t>(std::min(unit, 1.0f) * 255.0f + 0.5f);
+}
+
+}  // namespace
+
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Result<Renderer> Renderer::create(int width, int height, const RendererOptions& options) {
+  if (width < 0 || height < 0) return Failure{Error::bad_argument, 0, "negative image size"};
+  if (options.threads < 0 || options.threads > 1024)
+    return Failure{Error::bad_argument, 0, "thread count outside 0..1024"};
+  const int max_side = std::min(options.max_side, kMaxSide);
+  if (width > max_side || height > max_side) return Failure{Error::limit_exceeded, 0, "image side over the limit"};
+  const Kernels* kernels = kernels_for(options.isa);
+  if (kernels == nullptr) return Failure{Error::bad_argument, 0, "instruction set not available"};
+  std::unique_ptr<State> state(new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}});
+  for (int i = 0; i < state->pool.thread_count(); ++i) state->painters.push_back(std::make_unique<TilePainter>());
+  return Renderer(std::move(state));
+}
+
+Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& camera,
+                                          const RenderQuality* const qualities[2], PaintInput& input) {
+  if (!is_usable(camera.clip_from_world))
+    return Failure{Error::bad_argument, 0, "camera matrix is singular or not finite"};
+  input.pattern = sample_pattern(qualities[0]->samples);
+  if (input.pattern.empty()) return Failure{Error::bad_argument, 0, "samples must be 1, 4, 16 or 64"};
+  if (width == 0 || height == 0) return RenderStats{};
+  FrameInput frame{
+      &scene, &camera, kernels, make_viewport(width, height), sample_hull(input.pattern), {nullptr, nullptr}};
+  for (int r = 0; r < 2; ++r) {
+    input.surfaces[r] = nullptr;
+    if (qualities[r] == nullptr) continue;
+    PAC_CHECK(prepare_surfaces(scene, camera, *qualities[r], surfaces[r]));
+    frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
+  }
+  auto stats = draw_list.build(frame, pool);
+  if (!stats.ok()) return stats;
+
+  input.draw_list = &draw_list;
+  input.kernels = kernels;
+  input.width = width;
+  input.height = height;
+  for (int c = 0; c < 3; ++c) input.background[c] = to_byte(scene.background[c]);
+  const int n_tiles = draw_list.tiles_x() * draw_list.tiles_y();
+  std::atomic<int> next{0};
+  pool.for_each(static_cast<int64_t>(painters.size()), [&](int64_t thread) {
+    TilePainter& painter = *painters[static_cast<size_t>(thread)];
+    for (int tile = next.fetch_add(1); tile < n_tiles; tile = next.fetch_add(1)) painter.paint(input, tile);
+  });
+  return stats;
+}
+
+Result<RenderStats> Renderer::render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
+                                     const RenderTargets& targets) {
+  const int w = state_->width, h = state_->height;
+  if (!fits(targets.color, w, h) || !fits(targets.depth, w, h) || !fits(targets.id, w, h))
+    return Failure{Error::bad_argument, 0, "target size is not the renderer's"};
+  PaintInput input{};
+  input.color[0] = targets.color;
+  input.depth = targets.depth;
+  input.id = targets.id;
+  const RenderQuality* const qualities[2] = {&quality, nullptr};
+  return state_->draw(scene, camera, qualities, input);
+}
+
+Result<RenderStats> Renderer::render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,
+                                          const RenderQuality& low, const RenderTargets& high_targets,
+                                          RgbView low_color, RgbView difference) {
+  const int w = state_->width, h = state_->height;
+  if (!fits(high_targets.color, w, h) || !fits(high_targets.depth, w, h) || !fits(high_targets.id, w, h) ||
+      !fits(low_color, w, h) || !fits(difference, w, h))
+    return Failure{Error::bad_argument, 0, "target size is not the renderer's"};
+  if (high.samples != low.samples || high.cull_back_faces != low.cull_back_faces)
+    return Failure{Error::bad_argument, 0, "a pair shares samples and culling"};
+  PaintInput input{};
+  input.color[0] = high_targets.color;
+  input.color[1] = low_color;
+  input.depth = high_targets.depth;
+  input.id = high_targets.id;
+  input.difference = difference;
+  const RenderQuality* const qualities[2] = {&high, &low};
+  return state_->draw(scene, camera, qualities, input);
+}
+
+}  // namespace pac::raster

@@ -1,0 +1,122 @@
+#include "raster/tile_painter.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace pac::raster {
+
+void TilePainter::paint(const PaintInput& input, int tile) {
+  const int tile_x = tile % input.draw_list->tiles_x(), tile_y = tile / input.draw_list->tiles_x();
+  const Area area{tile_x * kTileSize, tile_y * kTileSize, std::min(kTileSize, input.width - tile_x * kTileSize),
+                  std::min(kTileSize, input.height - tile_y * kTileSize)};
+  input.draw_list->triangles_of(tile, triangles_);
+  const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
+  const auto n_samples = static_cast<int>(input.pattern.size());
+  for (int r = 0; r < n_renderings; ++r)
+    for (int c = 0; c < 3; ++c)
+      std::fill_n(sums_[r] + c * kTilePixels, kTilePixels,
+                  static_cast<uint16_t>(n_samples * input.background[c] + n_samples / 2));
+  for (int s = 0; s < n_samples; ++s) {
+    const SampleOffset offset = input.pattern[static_cast<size_t>(s)];
+    const SamplePosition origin{area.x * 256 + offset.x, area.y * 256 + offset.y};
+    if (triangles_.empty() && s > 0) break;
+    rasterize(input, origin);
+    if (s == 0) write_depth_and_id(input, area);
+    collect_packs(area);
+    for (int r = 0; r < n_renderings; ++r) shade(input, r, origin);
+  }
+  write_color(input, area);
+}
+
+void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
+  std::fill_n(depth_, kTilePixels, 1.0f);
+  std::fill_n(ids_, kTilePixels, 0u);
+  for (size_t i = 0; i < triangles_.size(); ++i)
+    input.kernels->tile.rasterize(*triangles_[i], static_cast<uint32_t>(i + 1), origin, depth_, ids_);
+}
+
+// One pack for each triangle that is seen in a group of eight neighbors.
+void TilePainter::collect_packs(const Area& area) {
+  packs_.clear();
+  for (int y = 0; y < area.height; ++y) {
+    for (int x = 0; x < area.width; x += 8) {
+      const uint32_t* ids = ids_ + y * kTileSize + x;
+      uint32_t left = 0xFF;
+      while (left != 0) {
+        const uint32_t id = ids[std::countr_zero(left)];
+        uint32_t mask = 0;
+        for (uint32_t k = 0; k < 8; ++k) mask |= (ids[k] == id ? 1u : 0u) << k;
+        left &= ~mask;
+        if (id != 0)
+          packs_.push_back(
+              {triangles_[id - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y), static_cast<uint8_t>(mask)});
+      }
+    }
+  }
+}
+
+// Packs of one batch state together, in calls of up to kBatchPacks.
+void TilePainter::shade(const PaintInput& input, int rendering, SamplePosition origin) {
+  const std::vector<Surface>& surfaces = *input.surfaces[rendering];
+  size_t from = 0;
+  while (from < packs_.size()) {
+    const uint32_t batch = packs_[from].triangle->state[rendering];
+    const auto rest = std::stable_partition(packs_.begin() + static_cast<ptrdiff_t>(from), packs_.end(),
+                                            [&](const LanePack& p) { return p.triangle->state[rendering] == batch; });
+    const auto to = static_cast<size_t>(rest - packs_.begin());
+    for (; from < to; from += std::min<size_t>(kBatchPacks, to - from))
+      shade_batch(input, rendering, surfaces[batch], origin, packs_.data() + from,
+                  static_cast<int>(std::min<size_t>(kBatchPacks, to - from)));
+  }
+}
+
+void TilePainter::shade_batch(const PaintInput& input, int rendering, const Surface& surface, SamplePosition origin,
+                              const LanePack* packs, int n) {
+  const TileKernels& kernels = input.kernels->tile;
+  const AttributeLayout& layout = surface.layout;
+  const bool textured = layout.uv >= 0;
+  InterpolateTarget target{rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
+  if (textured) {
+    target.lod = lod_;
+    target.width = static_cast<float>(surface.sampler.width[0]);
+    target.height = static_cast<float>(surface.sampler.height[0]);
+  }
+  kernels.interpolate(packs, n, origin, target);
+  const auto row = [&](int attribute) { return rows_ + attribute * kBatchLanes; };
+  const float* specular = layout.specular >= 0 ? row(layout.specular) : nullptr;
+  if (layout.normal >= 0) {
+    kernels.light(surface.lighting, 8 * n, row(layout.normal), row(layout.position), rows_, specular_);
+    if (surface.lighting.has_specular != 0) specular = specular_;
+  }
+  if (textured) kernels.sample_texture(surface.sampler, 8 * n, row(layout.uv), row(layout.uv + 1), lod_, texels_);
+  kernels.accumulate(packs, n, rows_, textured ? texels_ : nullptr, specular, input.background, sums_[rendering]);
+}
+
+void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {
+  for (int y = 0; y < area.height; ++y) {
+    if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth.pixel(area.x, area.y + y));
+    if (input.id.empty()) continue;
+    uint32_t* out = input.id.pixel(area.x, area.y + y);
+    for (int x = 0; x < area.width; ++x) {
+      const uint32_t id = ids_[y * kTileSize + x];
+      out[x] = id == 0 ? 0 : triangles_[id - 1]->id;
+    }
+  }
+}
+
+void TilePainter::write_color(const PaintInput& input, const Area& area) const {
+  const int shift = std::countr_zero(static_cast<unsigned>(input.pattern.size()));
+  const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
+  uint8_t rows[2][3 * kTileSize];
+  for (int y = 0; y < area.height; ++y) {
+    for (int r = 0; r < n_renderings; ++r) {
+      input.kernels->tile.resolve_row(sums_[r] + y * kTileSize, shift, area.width, rows[r]);
+      if (!input.color[r].empty()) std::copy_n(rows[r], 3 * area.width, input.color[r].pixel(area.x, area.y + y));
+    }
+    if (!input.difference.empty())
+      input.kernels->pixel.difference_row(rows[0], rows[1], input.difference.pixel(area.x, area.y + y),
+                                          3 * static_cast<size_t>(area.width));
+  }
+}
+
+}  // namespace pac::raster

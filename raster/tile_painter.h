@@ -1,0 +1,59 @@
+// The back end: one tile at a time, visibility first, then each covered sample shaded once, then the box filter.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/kernels/kernels.h"
+#include "raster/draw_list.h"
+#include "raster/renderer.h"
+#include "raster/sample_pattern.h"
+#include "raster/surface.h"
+
+namespace pac::raster {
+
+struct PaintInput {
+  const DrawList* draw_list;
+  const Kernels* kernels;
+  std::span<const SampleOffset> pattern;
+  int width, height;
+  const std::vector<Surface>* surfaces[2];  // [1] null: one rendering
+  uint8_t background[3];
+  RgbView color[2];
+  RgbView difference;  // only with two renderings
+  PlaneView<float> depth;
+  PlaneView<uint32_t> id;
+};
+
+// The working memory of one thread.
+class TilePainter {
+ public:
+  void paint(const PaintInput& input, int tile);
+
+ private:
+  static constexpr int kTilePixels = kTileSize * kTileSize;
+
+  // Pixels of the tile inside the image.
+  struct Area {
+    int x, y, width, height;
+  };
+  void rasterize(const PaintInput& input, SamplePosition origin);
+  void collect_packs(const Area& area);
+  void shade(const PaintInput& input, int rendering, SamplePosition origin);
+  void shade_batch(const PaintInput& input, int rendering, const Surface& surface, SamplePosition origin,
+                   const LanePack* packs, int n);
+  void write_depth_and_id(const PaintInput& input, const Area& area) const;
+  void write_color(const PaintInput& input, const Area& area) const;
+
+  alignas(64) float depth_[kTilePixels];
+  alignas(64) uint32_t ids_[kTilePixels];  // 1 + index into triangles_; 0 = background
+  alignas(64) uint16_t sums_[2][3 * kTilePixels];
+  alignas(64) float rows_[kMaxAttributes * kBatchLanes];
+  alignas(64) float lod_[kBatchLanes];
+  alignas(64) float texels_[3 * kBatchLanes];
+  alignas(64) float specular_[3 * kBatchLanes];
+  std::vector<const RasterTriangle*> triangles_;
+  std::vector<LanePack> packs_, sorted_;
+};
+
+}  // namespace pac::raster
