@@ -1,0 +1,85 @@
+// The cubes of the paper's web page: lit, textured, seen from a camera that circles them.
+#include "base/exact_math.h"
+#include "sim/scene_builder.h"
+#include "sim/scene_parts.h"
+#include "sim/textures.h"
+#include "sim/textures_noise.h"
+
+namespace pac::sim {
+
+namespace {
+
+// Three axes of a cube, each half an edge long, turned about y and then about x.
+struct CubeFrame {
+  glm::vec3 x, y, z;
+  CubeFrame(double yaw_rad, double pitch_rad, float half) {
+    const auto cy = static_cast<float>(exact_cos(yaw_rad)), sy = static_cast<float>(exact_sin(yaw_rad));
+    const auto cp = static_cast<float>(exact_cos(pitch_rad)), sp = static_cast<float>(exact_sin(pitch_rad));
+    x = glm::vec3(cy, 0, -sy) * half;
+    y = glm::vec3(sp * sy, cp, sp * cy) * half;
+    z = glm::vec3(cp * sy, -sp, cp * cy) * half;
+  }
+};
+
+void add_cube(SceneBuilder& builder, glm::vec3 center, const CubeFrame& frame, uint32_t material) {
+  constexpr int kCuts = 4;  // a side: enough for highlights to survive Gouraud shading
+  const glm::vec3 &x = frame.x, &y = frame.y, &z = frame.z;
+  const auto side = [&](glm::vec3 out, glm::vec3 right, glm::vec3 up) {
+    builder.patch(center + out - right - up, right * 2.0f, up * 2.0f, kCuts, kCuts, material);
+  };
+  side(z, x, y);
+  side(-z, -x, y);
+  side(x, -z, y);
+  side(-x, z, y);
+  side(y, x, -z);
+  side(-y, x, z);
+}
+
+}  // namespace
+
+SceneSet build_cubes(uint32_t seed) {
+  SceneBuilder builder("cubes");
+  const uint32_t materials[] = {
+      builder.add_texture("brick", brick_wall(256, 256, seed + 1u)),
+      builder.add_texture("oak", oak_planks(256, 256, seed + 2u)),
+      builder.add_texture("marble", marble(256, 256, rgb8(226, 220, 208), rgb8(96, 92, 100), seed + 3u)),
+      builder.add_texture("tartan", tartan(256, 256, seed + 4u)),
+      builder.add_texture("flagstone", flagstones(256, 256, seed + 5u)),
+      builder.add_texture("seascape", painted_seascape(256, 256, seed + 6u), raster::Wrap::clamp),
+      builder.add_texture("composition", painted_abstract(256, 256, seed + 7u), raster::Wrap::clamp),
+  };
+  for (const uint32_t index : materials) {
+    raster::Material& material = builder.material(index);
+    material.lit = true;
+    material.ambient = glm::vec3(0.25f);
+    material.diffuse = glm::vec3(0.80f);
+    material.specular = glm::vec3(0.35f);
+    material.shininess = 24;
+    material.two_sided = false;
+  }
+  add_cube(builder, {0, 0, 0}, CubeFrame(0.3, 0.35, 1.15f), materials[0]);
+  constexpr int kSatellites = 6;
+  for (int k = 0; k < kSatellites; ++k) {
+    const double angle = 2.0 * kPi * k / kSatellites + 0.35;
+    const glm::vec3 center(2.75f * static_cast<float>(exact_sin(angle)), (k & 1) != 0 ? 0.95f : -0.95f,
+                           2.75f * static_cast<float>(exact_cos(angle)));
+    add_cube(builder, center, CubeFrame(0.7 * k + 0.2, 0.5 - 0.31 * k, 0.72f), materials[1 + k]);
+  }
+  SceneSet set;
+  set.fine = builder.take();
+  raster::Light sun, fill;
+  sun.direction = glm::normalize(glm::vec3(0.45f, -0.75f, -0.55f));
+  sun.color = {0.85f, 0.82f, 0.76f};
+  fill.direction = glm::normalize(glm::vec3(-0.8f, 0.25f, 0.3f));
+  fill.color = {0.18f, 0.21f, 0.28f};
+  set.fine.lights = {sun, fill};
+  set.fine.background = rgb8(30, 34, 46);
+  set.default_split = "texture";
+  return set;
+}
+
+raster::Camera cubes_camera(int frame, float aspect) {
+  return orbit_camera(frame, aspect, {0.0f, 0.0f, 0.0f}, 8.2f, 2.6f, 0.15, 96, 0.78f);
+}
+
+}  // namespace pac::sim
