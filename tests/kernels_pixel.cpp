@@ -47,5 +47,117 @@ TEST_CASE("composite_row: every instruction set gives the scalar bits, also in p
   }
 }
 
+TEST_CASE("ycc_from_rgb_row: every instruction set gives the scalar bits") {
+  KernelCheck check(4096);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(kMaxWidth, [&](size_t n, Guard guard, size_t shift) {
+      const uint8_t* rgb = check.input<uint8_t>(0, 3 * n, guard, shift, pattern, 0, 255, n);
+      check.compare<uint8_t>(3 * n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.ycc_from_rgb_row(rgb, n, out, out + n, out + 2 * n);
+      });
+    });
+  }
+}
+
+// The outputs of three planes above share one buffer; this one gives the last plane its own guard.
+TEST_CASE("ycc_from_rgb_row: each output plane ends where it should") {
+  KernelCheck check(4096);
+  for (int plane = 0; plane < 3; ++plane) {
+    for_each_placement(kMaxWidth, [&](size_t n, Guard guard, size_t shift) {
+      const uint8_t* rgb = check.input<uint8_t>(0, 3 * n, guard, shift, Pattern::random, 0, 255, n);
+      uint8_t others[2][kMaxWidth];
+      check.compare<uint8_t>(n, guard, shift, [&](const Kernels& table, uint8_t* out) {
+        uint8_t* planes[3];
+        planes[(plane + 1) % 3] = others[0];
+        planes[(plane + 2) % 3] = others[1];
+        planes[plane] = out;
+        table.pixel.ycc_from_rgb_row(rgb, n, planes[0], planes[1], planes[2]);
+      });
+    });
+  }
+}
+
+TEST_CASE("rgb_from_ycc_row: every instruction set gives the scalar bits") {
+  KernelCheck check(4096);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(kMaxWidth, [&](size_t n, Guard guard, size_t shift) {
+      const uint8_t* y = check.input<uint8_t>(0, n, guard, shift, Pattern::random, 0, 255, n);
+      const uint8_t* cb = check.input<uint8_t>(1, n, guard, (shift * 7) % 64, pattern, 0, 255, n);
+      const uint8_t* cr = check.input<uint8_t>(2, n, guard, (shift * 5) % 64, pattern, 0, 255, n + 1);
+      check.compare<uint8_t>(3 * n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* rgb) {
+        table.pixel.rgb_from_ycc_row(y, cb, cr, n, rgb);
+      });
+    });
+  }
+}
+
+// All 2^24 triples would be slow under emulation: every pair of chroma at the extremes and middle of luma, and every
+// triple on a grid of fives, which holds 0 and 255.
+TEST_CASE("color conversion: every chroma pair, and a grid of all colors") {
+  KernelCheck check(4096);
+  uint8_t first[256], second[256], rest[256], rgb[3 * 256];
+  for (size_t i = 0; i < 256; ++i) rest[i] = static_cast<uint8_t>(i);
+  for (int u = 0; u < 256; ++u) {
+    for (const int y : {0, 77, 255}) {
+      std::memset(first, y, sizeof first);
+      std::memset(second, u, sizeof second);
+      check.compare<uint8_t>(3 * 256, Guard::after, 0, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.rgb_from_ycc_row(first, second, rest, 256, out);
+      });
+    }
+  }
+  for (int r = 0; r < 256; r += 5) {
+    for (int g = 0; g < 256; g += 5) {
+      for (int b = 0; b < 256; ++b) {
+        rgb[3 * b] = static_cast<uint8_t>(r);
+        rgb[3 * b + 1] = static_cast<uint8_t>(g);
+        rgb[3 * b + 2] = static_cast<uint8_t>(b);
+      }
+      check.compare<uint8_t>(3 * 256, Guard::after, 0, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.ycc_from_rgb_row(rgb, 256, out, out + 256, out + 512);
+      });
+    }
+  }
+}
+
+TEST_CASE("chroma downsampling: every instruction set gives the scalar bits") {
+  KernelCheck check(4096);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(kMaxWidth, [&](size_t n, Guard guard, size_t shift) {
+      const uint8_t* a = check.input<uint8_t>(0, 2 * n, guard, shift, pattern, 0, 255, n);
+      const uint8_t* b = check.input<uint8_t>(1, 2 * n, guard, (shift * 7) % 64, Pattern::random, 0, 255, n + 1);
+      check.compare<uint8_t>(n, guard, (shift * 3) % 64,
+                             [&](const Kernels& table, uint8_t* out) { table.pixel.downsample_h2v1_row(a, n, out); });
+      check.compare<uint8_t>(n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.downsample_h2v2_row(a, b, n, out);
+      });
+    });
+  }
+}
+
+TEST_CASE("chroma upsampling: every instruction set gives the scalar bits") {
+  KernelCheck check(4096);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(kMaxWidth, [&](size_t n, Guard guard, size_t shift) {
+      if (n == 0) return;
+      const uint8_t* near = check.input<uint8_t>(0, n, guard, shift, pattern, 0, 255, n);
+      const uint8_t* far = check.input<uint8_t>(1, n, guard, (shift * 7) % 64, Pattern::extremes, 0, 255, n + 1);
+      check.compare<uint8_t>(2 * n, guard, (shift * 3) % 64,
+                             [&](const Kernels& table, uint8_t* out) { table.pixel.upsample_h2v1_row(near, n, out); });
+      check.compare<uint8_t>(2 * n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.upsample_h2v2_row(near, far, n, out);
+      });
+      for (const int bias : {1, 2})
+        check.compare<uint8_t>(n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* out) {
+          table.pixel.upsample_h1v2_row(near, far, bias, n, out);
+        });
+    });
+  }
+}
+
 }  // namespace
 }  // namespace pac::test

@@ -1,9 +1,349 @@
+// Pixel rows, 32 at a time; the formulas and the padded copies at a row's end are those of pixel_sse41.cpp. Unpacking
+// and packing stay inside 128-bit halves: a pair of them keeps the order, and what does not is put right by a
+// permutation.
+#include <immintrin.h>
+
+#include <cstddef>
+#include <cstdint>
+
 #include "base/kernels/pixel_kernels.h"
 
 namespace pac {
+namespace {
+
+constexpr size_t kStep = 32;  // pixels
+
+__m256i load(const uint8_t* p) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
+}
+void store(uint8_t* p, __m256i v) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p), v);
+}
+__m128i load_16(const uint8_t* p) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
+}
+__m256i load_halves(const uint8_t* low, const uint8_t* high) {
+  return _mm256_inserti128_si256(_mm256_castsi128_si256(load_16(low)), load_16(high), 1);
+}
+__m256i twice(__m128i v) {
+  return _mm256_broadcastsi128_si256(v);
+}
+void copy(uint8_t* to, const uint8_t* from, size_t n) {
+  __builtin_memcpy(to, from, n);
+}
+
+// Half the difference of either sign; one of the two is zero: 127 + max(h-l, 0) / 2 - max(l-h, 0) / 2.
+__m256i difference(__m256i h, __m256i l) {
+  const __m256i seven_bits = _mm256_set1_epi8(0x7F);
+  const __m256i up = _mm256_and_si256(_mm256_srli_epi16(_mm256_subs_epu8(h, l), 1), seven_bits);
+  const __m256i down = _mm256_and_si256(_mm256_srli_epi16(_mm256_subs_epu8(l, h), 1), seven_bits);
+  return _mm256_sub_epi8(_mm256_add_epi8(seven_bits, up), down);
+}
+
+// Added or subtracted twice with saturation: 2 * |d - 127| needs 9 bits.
+__m256i composite(__m256i l, __m256i d) {
+  const __m256i zero_difference = _mm256_set1_epi8(127);
+  const __m256i up = _mm256_subs_epu8(d, zero_difference), down = _mm256_subs_epu8(zero_difference, d);
+  return _mm256_subs_epu8(_mm256_subs_epu8(_mm256_adds_epu8(_mm256_adds_epu8(l, up), up), down), down);
+}
+
+template <class Operation>
+void for_each_sample(const uint8_t* a, const uint8_t* b, uint8_t* out, size_t n, Operation operation) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep) store(out + i, operation(load(a + i), load(b + i)));
+  if (i == n) return;
+  uint8_t last_a[kStep] = {}, last_b[kStep] = {}, last_out[kStep];
+  copy(last_a, a + i, n - i);
+  copy(last_b, b + i, n - i);
+  store(last_out, operation(load(last_a), load(last_b)));
+  copy(out + i, last_out, n - i);
+}
+
+void difference_row(const uint8_t* h, const uint8_t* l, uint8_t* d, size_t n) {
+  for_each_sample(h, l, d, n, [](__m256i a, __m256i b) { return difference(a, b); });
+}
+
+void composite_row(const uint8_t* l, const uint8_t* d, uint8_t* c, size_t n) {
+  for_each_sample(l, d, c, n, [](__m256i a, __m256i b) { return composite(a, b); });
+}
+
+// Both factors of a pmaddwd: `low` for the even 16-bit lanes, `high` for the odd ones.
+__m256i pair(int low, int high) {
+  return _mm256_set1_epi32(static_cast<int>(static_cast<uint32_t>(high) << 16 | (static_cast<uint32_t>(low) & 0xFFFF)));
+}
+
+// Four pixels in 32-bit lanes as 16-bit pairs, from 12 bytes that begin `offset` bytes into the vector.
+struct PixelPairs {
+  __m256i red_green, blue_green;
+};
+PixelPairs split(__m256i bytes, int offset) {
+  const __m256i rg = twice(_mm_setr_epi8(0, -1, 1, -1, 3, -1, 4, -1, 6, -1, 7, -1, 9, -1, 10, -1));
+  const __m256i bg = twice(_mm_setr_epi8(2, -1, 1, -1, 5, -1, 4, -1, 8, -1, 7, -1, 11, -1, 10, -1));
+  // Added to the even bytes only (offset is 0 or 4: no carry); the odd ones stay -1 and give zero.
+  const __m256i from = _mm256_set1_epi16(static_cast<int16_t>(offset));
+  return {_mm256_shuffle_epi8(bytes, _mm256_add_epi16(rg, from)),
+          _mm256_shuffle_epi8(bytes, _mm256_add_epi16(bg, from))};
+}
+
+struct Ycc {
+  __m256i y, cb, cr;  // 32-bit lanes, 0..255
+};
+// 38470 exceeds a signed 16-bit factor: 22086 of it goes with red, 16384 with blue. The factor 32768 is a shift by 15.
+Ycc ycc_from_rgb(PixelPairs p) {
+  const __m256i half = _mm256_set1_epi32(1 << 15), center = _mm256_set1_epi32((128 << 16) + (1 << 15) - 1);
+  const __m256i y = _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(19595, 22086)),
+                                     _mm256_madd_epi16(p.blue_green, pair(7471, 16384)));
+  const __m256i blue_15 = _mm256_srli_epi32(_mm256_slli_epi32(p.blue_green, 16), 1);
+  const __m256i red_15 = _mm256_srli_epi32(_mm256_slli_epi32(p.red_green, 16), 1);
+  const __m256i cb =
+      _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(-11059, -21709)), _mm256_add_epi32(blue_15, center));
+  const __m256i cr =
+      _mm256_add_epi32(_mm256_madd_epi16(p.blue_green, pair(-5329, -27439)), _mm256_add_epi32(red_15, center));
+  return {_mm256_srli_epi32(_mm256_add_epi32(y, half), 16), _mm256_srli_epi32(cb, 16), _mm256_srli_epi32(cr, 16)};
+}
+
+__m256i pack(__m256i a, __m256i b, __m256i c, __m256i d) {
+  return _mm256_packus_epi16(_mm256_packs_epi32(a, b), _mm256_packs_epi32(c, d));
+}
+
+// 96 bytes; the low half does pixels 0..15, the high half 16..31. The last load begins four bytes early instead of
+// ending four late.
+void ycc_from_rgb_step(const uint8_t* rgb, uint8_t* y, uint8_t* cb, uint8_t* cr) {
+  const auto convert = [rgb](size_t at, int offset) {
+    return ycc_from_rgb(split(load_halves(rgb + at, rgb + 48 + at), offset));
+  };
+  const Ycc p0 = convert(0, 0), p1 = convert(12, 0), p2 = convert(24, 0), p3 = convert(32, 4);
+  store(y, pack(p0.y, p1.y, p2.y, p3.y));
+  store(cb, pack(p0.cb, p1.cb, p2.cb, p3.cb));
+  store(cr, pack(p0.cr, p1.cr, p2.cr, p3.cr));
+}
+
+void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uint8_t* cr) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep) ycc_from_rgb_step(rgb + 3 * i, y + i, cb + i, cr + i);
+  if (i == n) return;
+  uint8_t last_rgb[3 * kStep] = {}, last[3][kStep];
+  copy(last_rgb, rgb + 3 * i, 3 * (n - i));
+  ycc_from_rgb_step(last_rgb, last[0], last[1], last[2]);
+  copy(y + i, last[0], n - i);
+  copy(cb + i, last[1], n - i);
+  copy(cr + i, last[2], n - i);
+}
+
+struct Rgb {
+  __m256i r, g, b;  // 16-bit lanes, to be added to y
+};
+// (c v + 32768) >> 16 == (mulhi(2v, c) + 1) >> 1 for a 16-bit c: nested floors. What exceeds 16 bits is taken out as
+// whole multiples: 91881 = 65536 + 26345, 116130 = 131072 - 14942, -46802 = -65536 + 18734.
+Rgb offsets_from_chroma(__m256i u, __m256i v) {
+  const __m256i one = _mm256_set1_epi16(1), half = _mm256_set1_epi32(1 << 15);
+  const __m256i two_u = _mm256_add_epi16(u, u), two_v = _mm256_add_epi16(v, v);
+  const __m256i red = _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(two_v, _mm256_set1_epi16(26345)), one), 1);
+  const __m256i blue =
+      _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(two_u, _mm256_set1_epi16(-14942)), one), 1);
+  const __m256i low = _mm256_madd_epi16(_mm256_unpacklo_epi16(u, v), pair(-22554, 18734));
+  const __m256i high = _mm256_madd_epi16(_mm256_unpackhi_epi16(u, v), pair(-22554, 18734));
+  const __m256i green = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(low, half), 16),
+                                           _mm256_srai_epi32(_mm256_add_epi32(high, half), 16));
+  return {_mm256_add_epi16(v, red), _mm256_sub_epi16(green, v), _mm256_add_epi16(two_u, blue)};
+}
+
+// In each half: byte j of output vector k is channel (16k + j) % 3 of pixel (16k + j) / 3.
+struct InterleaveMasks {
+  alignas(16) int8_t mask[3][3][16];  // [vector][channel]
+};
+constexpr InterleaveMasks make_interleave_masks() {
+  InterleaveMasks masks{};
+  for (int k = 0; k < 3; ++k)
+    for (int channel = 0; channel < 3; ++channel)
+      for (int j = 0; j < 16; ++j)
+        masks.mask[k][channel][j] = static_cast<int8_t>((16 * k + j) % 3 == channel ? (16 * k + j) / 3 : -1);
+  return masks;
+}
+constexpr InterleaveMasks kInterleave = make_interleave_masks();
+
+__m256i interleave(const int8_t (&masks)[3][16], __m256i r, __m256i g, __m256i b) {
+  const auto pick = [](__m256i from, const int8_t* mask) {
+    return _mm256_shuffle_epi8(from, twice(_mm_load_si128(reinterpret_cast<const __m128i*>(mask))));
+  };
+  return _mm256_or_si256(_mm256_or_si256(pick(r, masks[0]), pick(g, masks[1])), pick(b, masks[2]));
+}
+
+void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, uint8_t* rgb) {
+  const __m256i zero = _mm256_setzero_si256(), center = _mm256_set1_epi16(128);
+  const __m256i luma = load(y), u = load(cb), v = load(cr);
+  const Rgb low = offsets_from_chroma(_mm256_sub_epi16(_mm256_unpacklo_epi8(u, zero), center),
+                                      _mm256_sub_epi16(_mm256_unpacklo_epi8(v, zero), center));
+  const Rgb high = offsets_from_chroma(_mm256_sub_epi16(_mm256_unpackhi_epi8(u, zero), center),
+                                       _mm256_sub_epi16(_mm256_unpackhi_epi8(v, zero), center));
+  const __m256i luma_low = _mm256_unpacklo_epi8(luma, zero), luma_high = _mm256_unpackhi_epi8(luma, zero);
+  const auto channel = [&](__m256i a, __m256i b) {
+    return _mm256_packus_epi16(_mm256_add_epi16(luma_low, a), _mm256_add_epi16(luma_high, b));
+  };
+  const __m256i r = channel(low.r, high.r), g = channel(low.g, high.g), b = channel(low.b, high.b);
+  // Low halves: bytes 0..47 in order; high halves: bytes 48..95.
+  const __m256i v0 = interleave(kInterleave.mask[0], r, g, b), v1 = interleave(kInterleave.mask[1], r, g, b),
+                v2 = interleave(kInterleave.mask[2], r, g, b);
+  store(rgb, _mm256_permute2x128_si256(v0, v1, 0x20));
+  store(rgb + 32, _mm256_permute2x128_si256(v2, v0, 0x30));
+  store(rgb + 64, _mm256_permute2x128_si256(v1, v2, 0x31));
+}
+
+void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep) rgb_from_ycc_step(y + i, cb + i, cr + i, rgb + 3 * i);
+  if (i == n) return;
+  uint8_t last[3][kStep] = {}, last_rgb[3 * kStep];
+  copy(last[0], y + i, n - i);
+  copy(last[1], cb + i, n - i);
+  copy(last[2], cr + i, n - i);
+  rgb_from_ycc_step(last[0], last[1], last[2], last_rgb);
+  copy(rgb + 3 * i, last_rgb, 3 * (n - i));
+}
+
+// packus works in halves: (a0 b0 | a1 b1) becomes (a0 a1 | b0 b1).
+__m256i pack_in_order(__m256i a, __m256i b) {
+  return _mm256_permute4x64_epi64(_mm256_packus_epi16(a, b), 0xD8);
+}
+
+__m256i sums_of_two(const uint8_t* p) {
+  return _mm256_maddubs_epi16(load(p), _mm256_set1_epi8(1));
+}
+
+void downsample_h2v1_step(const uint8_t* in, uint8_t* out) {
+  const __m256i bias = pair(0, 1);
+  const auto half = [&](const uint8_t* p) { return _mm256_srli_epi16(_mm256_add_epi16(sums_of_two(p), bias), 1); };
+  store(out, pack_in_order(half(in), half(in + 32)));
+}
+
+void downsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep) downsample_h2v1_step(in + 2 * i, out + i);
+  if (i == n) return;
+  uint8_t last_in[2 * kStep] = {}, last_out[kStep];
+  copy(last_in, in + 2 * i, 2 * (n - i));
+  downsample_h2v1_step(last_in, last_out);
+  copy(out + i, last_out, n - i);
+}
+
+void downsample_h2v2_step(const uint8_t* a, const uint8_t* b, uint8_t* out) {
+  const __m256i bias = pair(1, 2);
+  const auto quarter = [&](const uint8_t* p, const uint8_t* q) {
+    return _mm256_srli_epi16(_mm256_add_epi16(_mm256_add_epi16(sums_of_two(p), sums_of_two(q)), bias), 2);
+  };
+  store(out, pack_in_order(quarter(a, b), quarter(a + 32, b + 32)));
+}
+
+void downsample_h2v2_row(const uint8_t* a, const uint8_t* b, size_t n, uint8_t* out) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep) downsample_h2v2_step(a + 2 * i, b + 2 * i, out + i);
+  if (i == n) return;
+  uint8_t last_a[2 * kStep] = {}, last_b[2 * kStep] = {}, last_out[kStep];
+  copy(last_a, a + 2 * i, 2 * (n - i));
+  copy(last_b, b + 2 * i, 2 * (n - i));
+  downsample_h2v2_step(last_a, last_b, last_out);
+  copy(out + i, last_out, n - i);
+}
+
+// 3 a + b in 16-bit lanes, for the low and the high eight samples of each half.
+struct Weighted {
+  __m256i low, high;
+};
+Weighted three_to_one(__m256i a, __m256i b) {
+  const __m256i weights = _mm256_set1_epi16(0x0103);
+  return {_mm256_maddubs_epi16(_mm256_unpacklo_epi8(a, b), weights),
+          _mm256_maddubs_epi16(_mm256_unpackhi_epi8(a, b), weights)};
+}
+
+// Even outputs in the low bytes, odd ones in the high bytes of each 16-bit lane: interleaved already.
+void store_interleaved(uint8_t* out, __m256i even_low, __m256i even_high, __m256i odd_low, __m256i odd_high) {
+  const __m256i low = _mm256_or_si256(even_low, _mm256_slli_epi16(odd_low, 8));
+  const __m256i high = _mm256_or_si256(even_high, _mm256_slli_epi16(odd_high, 8));
+  store(out, _mm256_permute2x128_si256(low, high, 0x20));
+  store(out + 32, _mm256_permute2x128_si256(low, high, 0x31));
+}
+
+// Reads in[-1] .. in[32].
+void upsample_h2v1_step(const uint8_t* in, uint8_t* out) {
+  const __m256i here = load(in), one = _mm256_set1_epi16(1), two = _mm256_set1_epi16(2);
+  const Weighted even = three_to_one(here, load(in - 1)), odd = three_to_one(here, load(in + 1));
+  const auto quarter = [](__m256i sum, __m256i bias) { return _mm256_srli_epi16(_mm256_add_epi16(sum, bias), 2); };
+  store_interleaved(out, quarter(even.low, one), quarter(even.high, one), quarter(odd.low, two),
+                    quarter(odd.high, two));
+}
+
+// A step's inputs with the sample before and the one after, copied where the row ends inside them.
+struct Surrounded {
+  uint8_t bytes[kStep + 2] = {};
+  Surrounded(const uint8_t* row, size_t n, size_t at, size_t count) {
+    bytes[0] = row[at == 0 ? 0 : at - 1];
+    copy(bytes + 1, row + at, count);
+    bytes[count + 1] = row[at + count == n ? n - 1 : at + count];
+  }
+};
+
+// Steps that have both neighbors read the row itself, the first and last ones a surrounded copy.
+void upsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; i += kStep) {
+    if (i > 0 && i + kStep < n) {
+      upsample_h2v1_step(in + i, out + 2 * i);
+      continue;
+    }
+    const size_t count = n - i < kStep ? n - i : kStep;
+    const Surrounded edge(in, n, i, count);
+    uint8_t edge_out[2 * kStep];
+    upsample_h2v1_step(edge.bytes + 1, edge_out);
+    copy(out + 2 * i, edge_out, 2 * count);
+  }
+}
+
+void upsample_h2v2_step(const uint8_t* near, const uint8_t* far, uint8_t* out) {
+  const Weighted here = three_to_one(load(near), load(far)), left = three_to_one(load(near - 1), load(far - 1)),
+                 right = three_to_one(load(near + 1), load(far + 1));
+  const auto sixteenth = [](__m256i nearer, __m256i farther, int bias) {
+    const __m256i three = _mm256_add_epi16(_mm256_add_epi16(nearer, nearer), nearer);
+    return _mm256_srli_epi16(
+        _mm256_add_epi16(_mm256_add_epi16(three, farther), _mm256_set1_epi16(static_cast<int16_t>(bias))), 4);
+  };
+  store_interleaved(out, sixteenth(here.low, left.low, 8), sixteenth(here.high, left.high, 8),
+                    sixteenth(here.low, right.low, 7), sixteenth(here.high, right.high, 7));
+}
+
+void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; i += kStep) {
+    if (i > 0 && i + kStep < n) {
+      upsample_h2v2_step(near + i, far + i, out + 2 * i);
+      continue;
+    }
+    const size_t count = n - i < kStep ? n - i : kStep;
+    const Surrounded edge_near(near, n, i, count), edge_far(far, n, i, count);
+    uint8_t edge_out[2 * kStep];
+    upsample_h2v2_step(edge_near.bytes + 1, edge_far.bytes + 1, edge_out);
+    copy(out + 2 * i, edge_out, 2 * count);
+  }
+}
+
+void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {
+  const __m256i rounding = _mm256_set1_epi16(static_cast<int16_t>(bias));
+  for_each_sample(near, far, out, n, [&](__m256i a, __m256i b) {
+    const Weighted sum = three_to_one(a, b);
+    return _mm256_packus_epi16(_mm256_srli_epi16(_mm256_add_epi16(sum.low, rounding), 2),
+                               _mm256_srli_epi16(_mm256_add_epi16(sum.high, rounding), 2));
+  });
+}
+
+}  // namespace
 
 void fill_pixel_avx2(PixelKernels& table) {
-  static_cast<void>(table);
+  table.difference_row = difference_row;
+  table.composite_row = composite_row;
+  table.ycc_from_rgb_row = ycc_from_rgb_row;
+  table.rgb_from_ycc_row = rgb_from_ycc_row;
+  table.downsample_h2v1_row = downsample_h2v1_row;
+  table.downsample_h2v2_row = downsample_h2v2_row;
+  table.upsample_h2v1_row = upsample_h2v1_row;
+  table.upsample_h2v2_row = upsample_h2v2_row;
+  table.upsample_h1v2_row = upsample_h1v2_row;
 }
 
 }  // namespace pac

@@ -30,15 +30,24 @@ uint8_t* GuardedBuffer::place(size_t n, Guard guard, size_t shift) {
   PAC_ASSERT(n + shift <= pages_.size());
   data_offset_ = guard == Guard::before ? shift : pages_.size() - n - shift;
   data_size_ = n;
-  std::memset(pages_.data(), kCanary, data_offset_);
-  const size_t end = data_offset_ + data_size_;
-  std::memset(pages_.data() + end, kCanary, pages_.size() - end);
+  std::memset(slack_before().data(), kCanary, slack_before().size());
+  std::memset(slack_after().data(), kCanary, slack_after().size());
   return pages_.data() + data_offset_;
+}
+
+std::span<uint8_t> GuardedBuffer::slack_before() const {
+  const size_t n = std::min(data_offset_, kMaxSlack);
+  return pages_.subspan(data_offset_ - n, n);
+}
+
+std::span<uint8_t> GuardedBuffer::slack_after() const {
+  const size_t end = data_offset_ + data_size_;
+  return pages_.subspan(end, std::min(pages_.size() - end, kMaxSlack));
 }
 
 bool GuardedBuffer::intact() const {
   const auto is_canary = [](uint8_t byte) { return byte == kCanary; };
-  const auto before = pages_.first(data_offset_), after = pages_.subspan(data_offset_ + data_size_);
+  const auto before = slack_before(), after = slack_after();
   return std::all_of(before.begin(), before.end(), is_canary) && std::all_of(after.begin(), after.end(), is_canary);
 }
 

@@ -11,7 +11,7 @@ namespace pac::test {
 enum class Guard : uint8_t { before, after };
 constexpr Guard kGuards[] = {Guard::before, Guard::after};
 
-// Whole pages between two PROT_NONE pages. place() puts data flush against one of them; the bytes of slack left on
+// Whole pages between two PROT_NONE pages. place() puts data flush against one of them; up to 128 bytes of slack on
 // either side hold a canary that intact() looks at. Reuse one buffer for many placements: mapping is slow.
 class GuardedBuffer {
  public:
@@ -22,8 +22,7 @@ class GuardedBuffer {
   GuardedBuffer& operator=(const GuardedBuffer&) = delete;
 
   // `n` bytes whose first (Guard::before) or last (Guard::after) byte lies `shift` (0..64) bytes from the guard page:
-  // shift 0 touches it, the others give every misalignment. All bytes outside the data become canaries; the data keeps
-  // old bytes.
+  // shift 0 touches it, the others give every misalignment. The slack becomes canaries; the data keeps old bytes.
   uint8_t* place(size_t n, Guard guard, size_t shift = 0);
 
   // The same for `count` elements of T; shift in bytes, a multiple of alignof(T).
@@ -32,11 +31,15 @@ class GuardedBuffer {
     return reinterpret_cast<T*>(place(count * sizeof(T), guard, shift));
   }
 
-  // No byte outside the data has changed since place().
+  // No canary has changed since place().
   bool intact() const;
 
  private:
+  std::span<uint8_t> slack_before() const;
+  std::span<uint8_t> slack_after() const;
+
   static constexpr uint8_t kCanary = 0xA5;
+  static constexpr size_t kMaxSlack = 128;
   uint8_t* mapping_ = nullptr;  // with both guard pages
   size_t mapping_size_ = 0;
   std::span<uint8_t> pages_;  // between them
