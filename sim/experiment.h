@@ -26,7 +26,7 @@ struct Entropies {
 // Against H, over all images [Levoy95 s.3].
 struct Scores {
   double rms = 0;      // root mean square over all samples of R, G, B, in code values
-  double psnr_db = 0;  // from rms, peak 255; 99 where the images are equal
+  double psnr_db = 0;  // from rms, peak 255; +infinity where the images are equal (JSON: null)
   double ssim = 0;     // of luma
 };
 
@@ -74,15 +74,16 @@ Result<Renderings> render_split(const SceneSet& scene, const raster::Camera& cam
 
 // One arm of the comparison.
 struct Arm {
-  CodedImage coded;              // of H, or of D
-  RgbImage shown;                // what the viewer sees: decoded H, or the composite
-  RgbImage decoded;              // decoded D; empty for the image-based arm
-  Scores scores;                 // of `shown` against H
-  uint64_t image_bytes = 0;      // the JPEG file
-  uint64_t model_bytes = 0;      // of this frame; 0 where resident, and for the image-based arm
-  uint64_t total_bytes = 0;      // image + model
-  double compression_ratio = 0;  // width * height * 3 / total_bytes
-  double budget_share = 0;       // total_bytes / 12,500: a frame's share of 2 Mb/s at 20 frames a second [Table I]
+  CodedImage coded;                    // of H, or of D
+  RgbImage shown;                      // what the viewer sees: decoded H, or the composite
+  RgbImage decoded;                    // decoded D; empty for the image-based arm
+  Scores scores;                       // of `shown` against H
+  uint64_t image_bytes = 0;            // the JPEG file
+  uint64_t optimal_huffman_bytes = 0;  // with Huffman codes made for it; 0 but from run_still
+  uint64_t model_bytes = 0;            // of this frame; 0 where resident, and for the image-based arm
+  uint64_t total_bytes = 0;            // image + model
+  double compression_ratio = 0;        // width * height * 3 / total_bytes
+  double budget_share = 0;  // total_bytes / 12,500: a frame's share of 2 Mb/s at 20 frames a second [Table I]
 };
 
 constexpr double kBudgetBytesPerFrame = 2e6 / 20 / 8;
@@ -113,5 +114,10 @@ struct Still {
 // Fails with bad_argument for quality out of range, and as the functions above. With charge_model: limit_exceeded
 // where the model alone is larger than the size.
 Result<Still> run_still(const SceneSet& scene, const raster::Camera& camera, const StillOptions& options);
+
+// Row F of Table I: the same still with the model transmitted. D is coded at `difference_quality` (row E's), and the
+// image-based arm at the size of D and model together, so that the two can be compared ("even in this case", s.4.1).
+Result<Still> run_transmitted(const SceneSet& scene, const raster::Camera& camera, const StillOptions& options,
+                              double difference_quality);
 
 }  // namespace pac::sim

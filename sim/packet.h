@@ -1,7 +1,7 @@
 // The bytes between server and client: a session message (once) and one packet a frame. Little-endian throughout.
 //
 //   session  "PACM" version u16 flags u16 | width u32 height u32 | RenderQuality 4 x u8 | background 3 x f32
-//            | resident model: u64 length, bytes (absent where the model is transmitted) | CRC-32 u32
+//            | resident model (to the end; absent where the model is transmitted) | CRC-32 u32
 //   frame    "PACF" version u16 codec u8 flags u8 | frame u32 | camera 19 x f32 | coded quality f64 | hash of L u64
 //            | model length u32 difference length u32 | model bytes | difference bytes | CRC-32 u32
 // The CRC [ISO 3309, as in PNG] covers all bytes before it. Floats travel as their raw bits, so that both sides draw
@@ -22,7 +22,7 @@ namespace pac::sim {
 enum class Codec : uint8_t { jpeg = 1 };
 
 constexpr uint16_t kProtocolVersion = 1;
-constexpr size_t kFramePacketOverhead = 120;  // bytes of a frame packet beside model and difference
+constexpr size_t kFramePacketOverhead = 116;  // bytes of a frame packet beside model and difference
 
 // Decoded form of one frame packet. The spans point into the packet.
 struct FramePacket {

@@ -44,7 +44,7 @@ struct PaperOptions {
 struct PaperResults {
   Table1 table1;
   Still room, pin;                          // the matched pairs of Table I, model resident (2l, 2m; 3d, 3e)
-  Still room_transmitted, pin_transmitted;  // the same quality of D with the model transmitted
+  Still room_transmitted, pin_transmitted;  // run_transmitted: row F
   std::vector<FigureSet> figures;
 };
 

@@ -31,12 +31,10 @@ struct ScreenModel {
 Result<ScreenModel> encode_screen_model(const raster::Scene& scene, const raster::Camera& camera,
                                         const raster::RenderQuality& quality, int width, int height);
 
-// The scene and camera that draw the decoded polygons in a window of width x height. Fails as geomcodec::decode.
-struct ScreenScene {
-  raster::Scene scene;
-  raster::Camera camera;
-};
-Result<ScreenScene> decode_screen_model(std::span<const uint8_t> bytes, int width, int height, glm::vec3 background,
-                                        const Limits& limits = {});
+// Decodes such a stream and draws it: L as both sides see it. `low` has the renderer's size. Fails as
+// geomcodec::decode; corrupt where a face names a material other than 0.
+Result<void> draw_screen_model(raster::Renderer& renderer, std::span<const uint8_t> bytes,
+                               const raster::RenderQuality& quality, glm::vec3 background, RgbView low,
+                               const Limits& limits = {});
 
 }  // namespace pac::sim

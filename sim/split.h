@@ -38,8 +38,9 @@ struct SplitOptions {
 //   shading       H Phong, antialiased, textured; L Gouraud, 1 sample, no texture [s.4.3, the one that fails]
 //   antialiasing  as texture, with 1 sample on both sides [s.4.3, last paragraph]
 //   lighting      H the colors of the full (radiosity) solution, L those of local lighting; textures on both sides
-// Whatever a part does not name is equal on both sides: textures on, `samples` a pixel, and interpolation by Phong
-// where the scene has lit materials (figure 5), by Gouraud where all colors are baked (figures 2 and 3).
+// Whatever a part does not name is equal on both sides: textures on, back faces culled where the material allows,
+// `samples` a pixel, and interpolation by Phong where the scene has lit materials (figure 5), by Gouraud where all
+// colors are baked (figures 2 and 3).
 const char* const* split_names();                  // null-terminated
 const char* split_summary(std::string_view part);  // one line, or null for an unknown part
 
@@ -53,9 +54,6 @@ Result<Split> make_split(std::string_view names, const SceneSet& scene, const Sp
 // The model that L draws, and nothing more: fine or coarse geometry, local colors where the split says so, and where
 // L is untextured each texture cut down to its mean color (the 1x1 level). Copies; keeps nothing of `scene`.
 raster::Scene low_scene(const SceneSet& scene, const Split& split);
-
-// A deep copy (textures are move-only).
-raster::Scene clone(const raster::Scene& scene);
 
 // Polygons (faces, as the paper counts them) that each side draws.
 uint64_t high_polygon_count(const SceneSet& scene);

@@ -41,8 +41,8 @@ struct Table1 {
   std::vector<Table1Column> columns;
 };
 
-// The column of one scene. `still`: matched pair with the model resident (rows A-E); `transmitted`: the same split
-// and coded quality of D with the model transmitted (row F). The paper's figures go in where scene is "room" or "pin".
+// The column of one scene. `still`: run_still's matched pair with the model resident (rows A-E); `transmitted`:
+// run_transmitted's at row E's quality (row F). The paper's figures go in where scene is "room" or "pin".
 Table1Column make_table1_column(const std::string& scene, const Still& still, const Still& transmitted);
 
 // {"columns": [{"scene", "width", "height", "rows": [{"section", "key", "label", "unit", "paper"|null, "ours",

@@ -1,0 +1,83 @@
+#include "sim/client.h"
+
+#include <utility>
+
+#include "jpeg/jpeg.h"
+#include "raster/renderer.h"
+#include "sim/difference.h"
+#include "sim/packet.h"
+#include "sim/screen_model.h"
+
+namespace pac::sim {
+
+struct Client::State {
+  ClientOptions options;
+  int width = 0, height = 0;
+  raster::RenderQuality quality;
+  glm::vec3 background{0};
+  bool resident = false;
+  raster::Scene model;
+  raster::Renderer renderer;
+  RgbImage low;
+  uint32_t frame_number = 0;
+};
+
+Result<Client> Client::create(std::span<const uint8_t> session, const ClientOptions& options) {
+  PAC_TRY(const SessionMessage message, read_session_message(session));
+  const uint64_t pixels = static_cast<uint64_t>(message.width) * static_cast<uint64_t>(message.height);
+  if (pixels > options.limits.max_pixels)
+    return Failure{Error::limit_exceeded, 8, "picture has more pixels than the limit"};
+  raster::Scene model;
+  if (message.has_model) {
+    PAC_TRY(model, parse_model(message.model, options.limits));
+  }
+  raster::RendererOptions renderer_options;
+  renderer_options.threads = options.threads;
+  renderer_options.isa = options.isa;
+  PAC_TRY(raster::Renderer renderer, raster::Renderer::create(message.width, message.height, renderer_options));
+  return Client(std::make_unique<State>(State{options, message.width, message.height, message.low, message.background,
+                                              message.has_model, std::move(model), std::move(renderer),
+                                              RgbImage(message.width, message.height), 0}));
+}
+
+Client::Client(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Client::~Client() = default;
+Client::Client(Client&&) noexcept = default;
+Client& Client::operator=(Client&&) noexcept = default;
+
+const RgbImage& Client::low() const {
+  return state_->low;
+}
+
+uint32_t Client::frame_number() const {
+  return state_->frame_number;
+}
+
+Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
+  State& state = *state_;
+  PAC_TRY(const FramePacket packet, read_frame_packet(bytes));
+  if (packet.has_model == state.resident)
+    return Failure{Error::corrupt, 7, "packet and session disagree about where the model is"};
+  // The size first: a hostile JPEG header must not make us allocate another picture than ours.
+  PAC_TRY(const jpeg::Info info, jpeg::read_info(packet.difference, state.options.limits));
+  if (info.width != state.width || info.height != state.height)
+    return Failure{Error::corrupt, 0, "difference image has another size than the session"};
+
+  const raster::RenderTargets targets{state.low.view(), {}, {}};
+  if (packet.has_model) {
+    PAC_CHECK(draw_screen_model(state.renderer, packet.model, state.quality, state.background, state.low.view(),
+                                state.options.limits));
+  } else {
+    PAC_CHECK(state.renderer.render(state.model, packet.camera, state.quality, targets));
+  }
+  state.frame_number = packet.frame;
+  if (image_hash(state.low.view()) != packet.low_hash)
+    return Failure{Error::corrupt, 96, "low-quality rendering differs from the server's"};
+
+  PAC_TRY(const RgbImage difference, jpeg::decode(packet.difference, state.options.limits, state.options.isa));
+  RgbImage picture(state.width, state.height);
+  composite_image(state.low.view(), difference.view(), picture.view(), state.options.isa);
+  return picture;
+}
+
+}  // namespace pac::sim

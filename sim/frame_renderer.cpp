@@ -1,0 +1,58 @@
+#include "sim/frame_renderer.h"
+
+#include <utility>
+
+#include "sim/difference.h"
+
+namespace pac::sim {
+
+Result<FrameRenderer> FrameRenderer::create(const SceneSet& scene, const Split& split, bool transmit_model, int width,
+                                            int height, int threads, Isa isa) {
+  if (transmit_model && split.low.texture)
+    return Failure{Error::bad_argument, 0, "a model whose low-quality rendering is textured cannot be transmitted"};
+  if (width < 1 || width > 65535 || height < 1 || height > 65535)
+    return Failure{Error::bad_argument, 0, "picture sides must be 1..65535"};
+  raster::RendererOptions options;
+  options.threads = threads;
+  options.isa = isa;
+  PAC_TRY(raster::Renderer renderer, raster::Renderer::create(width, height, options));
+  return FrameRenderer(std::move(renderer), scene, split, transmit_model, width, height, isa);
+}
+
+FrameRenderer::FrameRenderer(raster::Renderer renderer, const SceneSet& scene, const Split& split, bool transmit_model,
+                             int width, int height, Isa isa)
+    : renderer_(std::move(renderer)),
+      split_(split),
+      low_scene_(sim::low_scene(scene, split)),
+      transmit_model_(transmit_model),
+      width_(width),
+      height_(height),
+      isa_(isa) {}
+
+Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::Camera& camera) {
+  FrameImages images;
+  images.high = RgbImage(width_, height_);
+  images.low = RgbImage(width_, height_);
+  images.difference = RgbImage(width_, height_);
+  const raster::RenderTargets high{images.high.view(), {}, {}};
+  if (!transmit_model_ && split_.single_pass()) {
+    PAC_CHECK(renderer_.render_pair(scene.fine, camera, split_.high, split_.low, high, images.low.view(),
+                                    images.difference.view()));
+    return images;
+  }
+  PAC_CHECK(renderer_.render(scene.fine, camera, split_.high, high));
+  PAC_CHECK(draw_low(camera, images));
+  difference_image(images.high.view(), images.low.view(), images.difference.view(), isa_);
+  return images;
+}
+
+Result<void> FrameRenderer::draw_low(const raster::Camera& camera, FrameImages& images) {
+  if (!transmit_model_) {
+    PAC_CHECK(renderer_.render(low_scene_, camera, split_.low, {images.low.view(), {}, {}}));
+    return {};
+  }
+  PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_));
+  return draw_screen_model(renderer_, images.model.bytes, split_.low, low_scene_.background, images.low.view());
+}
+
+}  // namespace pac::sim

@@ -1,0 +1,47 @@
+// H, L and D of one frame by the way a split asks for: one traversal, two models, or a transmitted model.
+#pragma once
+
+#include "base/image.h"
+#include "base/isa.h"
+#include "base/result.h"
+#include "raster/renderer.h"
+#include "raster/scene.h"
+#include "sim/scenes.h"
+#include "sim/screen_model.h"
+#include "sim/split.h"
+
+namespace pac::sim {
+
+struct FrameImages {
+  RgbImage high, low, difference;
+  ScreenModel model;  // empty where the model is resident
+};
+
+// What the server and the experiments share. One object, one thread at a time.
+class FrameRenderer {
+ public:
+  // Copies what it needs besides the fine model. Fails as Renderer::create; bad_argument where a model that cannot be
+  // transmitted (L is textured) should be.
+  static Result<FrameRenderer> create(const SceneSet& scene, const Split& split, bool transmit_model, int width,
+                                      int height, int threads, Isa isa);
+
+  // `scene` is the one given to create(). Fails as Renderer::render and encode_screen_model.
+  Result<FrameImages> render(const SceneSet& scene, const raster::Camera& camera);
+
+  const raster::Scene& low_scene() const { return low_scene_; }
+  raster::Renderer& renderer() { return renderer_; }
+
+ private:
+  FrameRenderer(raster::Renderer renderer, const SceneSet& scene, const Split& split, bool transmit_model, int width,
+                int height, Isa isa);
+  Result<void> draw_low(const raster::Camera& camera, FrameImages& images);
+
+  raster::Renderer renderer_;
+  Split split_;
+  raster::Scene low_scene_;  // what the client has
+  bool transmit_model_;
+  int width_, height_;
+  Isa isa_;
+};
+
+}  // namespace pac::sim

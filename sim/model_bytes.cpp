@@ -1,0 +1,213 @@
+// serialize_model and parse_model: the resident model as plain little-endian fields.
+//
+//   flags u8 (1 normals, 2 texture coordinates) | vertices, faces, materials, textures, lights: u32 each | ambient 3
+//   f32 | background 3 f32 | vertex: position 3 f32 [normal 3 f32] [texcoord 2 f32] color 4 u8 | face: corners u32,
+//   material u32, vertex numbers u32... | material | texture: levels u8, level: w u32 h u32 RGBA | light
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "sim/byte_stream.h"
+#include "sim/packet.h"
+
+namespace pac::sim {
+
+namespace {
+
+constexpr uint8_t kNormals = 1, kTexcoords = 2;
+constexpr size_t kMaterialBytes = 60, kLightBytes = 44, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12;
+
+void write_vec3(ByteWriter& writer, const glm::vec3& v) {
+  for (int axis = 0; axis < 3; ++axis) writer.f32(v[axis]);
+}
+
+glm::vec3 read_vec3(ByteReader& reader) {
+  const float x = reader.f32(), y = reader.f32(), z = reader.f32();
+  return {x, y, z};
+}
+
+void write_mesh(ByteWriter& writer, const Mesh& mesh, uint8_t fields) {
+  for (const Vertex& vertex : mesh.vertices) {
+    for (const float p : vertex.position) writer.f32(p);
+    if ((fields & kNormals) != 0)
+      for (const float n : vertex.normal) writer.f32(n);
+    if ((fields & kTexcoords) != 0)
+      for (const float t : vertex.texcoord) writer.f32(t);
+    writer.raw(vertex.color);
+  }
+  for (const Face& face : mesh.faces) {
+    writer.u32(face.count);
+    writer.u32(face.material);
+    for (uint32_t k = 0; k < face.count; ++k) writer.u32(mesh.indices[face.first + k]);
+  }
+}
+
+void read_vertices(ByteReader& reader, Mesh& mesh, uint8_t fields) {
+  for (Vertex& vertex : mesh.vertices) {
+    for (float& p : vertex.position) p = reader.f32();
+    if ((fields & kNormals) != 0)
+      for (float& n : vertex.normal) n = reader.f32();
+    if ((fields & kTexcoords) != 0)
+      for (float& t : vertex.texcoord) t = reader.f32();
+    for (uint8_t& c : vertex.color) c = reader.u8();
+  }
+}
+
+Result<void> read_faces(ByteReader& reader, Mesh& mesh) {
+  for (Face& face : mesh.faces) {
+    const size_t at = reader.position();
+    face.first = static_cast<uint32_t>(mesh.indices.size());
+    face.count = reader.u32();
+    face.material = reader.u32();
+    if (face.count > reader.remaining() / 4) return Failure{Error::truncated, at, "face has more corners than bytes"};
+    if (mesh.indices.size() + face.count > UINT32_MAX)
+      return Failure{Error::limit_exceeded, at, "model has more corners than can be numbered"};
+    for (uint32_t k = 0; k < face.count; ++k) mesh.indices.push_back(reader.u32());
+  }
+  return {};
+}
+
+void write_material(ByteWriter& writer, const raster::Material& material) {
+  write_vec3(writer, material.ambient);
+  write_vec3(writer, material.diffuse);
+  write_vec3(writer, material.specular);
+  write_vec3(writer, material.emission);
+  writer.u32(static_cast<uint32_t>(material.shininess));
+  writer.u32(static_cast<uint32_t>(material.texture));
+  writer.u8(static_cast<uint8_t>(material.wrap));
+  writer.u8(static_cast<uint8_t>(material.filter));
+  writer.u8(material.lit ? 1 : 0);
+  writer.u8(material.two_sided ? 1 : 0);
+}
+
+Result<raster::Material> read_material(ByteReader& reader, uint32_t n_textures) {
+  const size_t at = reader.position();
+  raster::Material material;
+  material.ambient = read_vec3(reader);
+  material.diffuse = read_vec3(reader);
+  material.specular = read_vec3(reader);
+  material.emission = read_vec3(reader);
+  material.shininess = static_cast<int32_t>(reader.u32());
+  material.texture = static_cast<int32_t>(reader.u32());
+  const uint8_t wrap = reader.u8(), filter = reader.u8(), lit = reader.u8(), two_sided = reader.u8();
+  if (material.shininess < 0 || material.shininess > 1000)
+    return Failure{Error::corrupt, at + 48, "shininess outside 0..1000"};
+  if (material.texture < -1 || (material.texture >= 0 && static_cast<uint32_t>(material.texture) >= n_textures))
+    return Failure{Error::corrupt, at + 52, "material names a texture that does not exist"};
+  if (wrap > 1 || filter > 2 || lit > 1 || two_sided > 1)
+    return Failure{Error::corrupt, at + 56, "material flag out of range"};
+  material.wrap = static_cast<raster::Wrap>(wrap);
+  material.filter = static_cast<raster::Filter>(filter);
+  material.lit = lit != 0;
+  material.two_sided = two_sided != 0;
+  return material;
+}
+
+// Level 0 alone, or the mean color as a texture of one pixel: make_texture gives the same mip chain everywhere.
+void write_texture(ByteWriter& writer, const raster::Texture& texture, bool textured) {
+  const bool whole = textured && !texture.empty();
+  writer.u32(whole ? static_cast<uint32_t>(texture.width()) : 1);
+  writer.u32(whole ? static_cast<uint32_t>(texture.height()) : 1);
+  if (!whole) return writer.raw(texture.mean_color());
+  const ConstRgbaView level = texture.level(0);
+  for (int y = 0; y < level.height; ++y) writer.raw({level.row(y), static_cast<size_t>(level.width) * 4});
+}
+
+Result<raster::Texture> read_texture(ByteReader& reader, const Limits& limits) {
+  constexpr uint64_t kMaxSide = 32768;  // the rasterizer's
+  const size_t at = reader.position();
+  const uint64_t width = reader.u32(), height = reader.u32();
+  if (width < 1 || width > kMaxSide || height < 1 || height > kMaxSide)
+    return Failure{Error::corrupt, at, "texture side outside 1..32768"};
+  if (width * height > reader.remaining() / 4) return Failure{Error::truncated, at, "texture ends early"};
+  PAC_TRY(RgbaImage image, RgbaImage::create(static_cast<int64_t>(width), static_cast<int64_t>(height), limits));
+  for (int y = 0; y < image.height(); ++y)
+    std::memcpy(image.row(y), reader.raw(width * 4).data(), static_cast<size_t>(width) * 4);
+  return raster::make_texture("", std::move(image));
+}
+
+void write_light(ByteWriter& writer, const raster::Light& light) {
+  writer.u32(static_cast<uint32_t>(light.kind));
+  write_vec3(writer, light.direction);
+  write_vec3(writer, light.position);
+  write_vec3(writer, light.color);
+  writer.f32(light.range);
+}
+
+Result<raster::Light> read_light(ByteReader& reader) {
+  const size_t at = reader.position();
+  raster::Light light;
+  const uint32_t kind = reader.u32();
+  if (kind > 1) return Failure{Error::corrupt, at, "unknown kind of light"};
+  light.kind = static_cast<raster::Light::Kind>(kind);
+  light.direction = read_vec3(reader);
+  light.position = read_vec3(reader);
+  light.color = read_vec3(reader);
+  light.range = reader.f32();
+  return light;
+}
+
+bool any_lit(const raster::Scene& scene) {
+  for (const raster::Material& material : scene.materials)
+    if (material.lit) return true;
+  return false;
+}
+
+}  // namespace
+
+Bytes serialize_model(const raster::Scene& scene, bool textured) {
+  const bool texcoords = textured && !scene.textures.empty();
+  const auto fields = static_cast<uint8_t>((any_lit(scene) ? kNormals : 0) | (texcoords ? kTexcoords : 0));
+  ByteWriter writer;
+  writer.u8(fields);
+  for (const size_t count : {scene.mesh.vertices.size(), scene.mesh.faces.size(), scene.materials.size(),
+                             scene.textures.size(), scene.lights.size()})
+    writer.u32(static_cast<uint32_t>(count));
+  write_vec3(writer, scene.ambient_light);
+  write_vec3(writer, scene.background);
+  write_mesh(writer, scene.mesh, fields);
+  for (const raster::Material& material : scene.materials) write_material(writer, material);
+  for (const raster::Texture& texture : scene.textures) write_texture(writer, texture, textured);
+  for (const raster::Light& light : scene.lights) write_light(writer, light);
+  return writer.take();
+}
+
+Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& limits) {
+  if (bytes.size() > limits.max_bytes) return Failure{Error::limit_exceeded, 0, "model has more bytes than the limit"};
+  ByteReader reader(bytes);
+  const uint8_t fields = reader.u8();
+  if ((fields & ~(kNormals | kTexcoords)) != 0) return Failure{Error::unsupported, 0, "unknown vertex fields"};
+  const uint64_t n_vertices = reader.u32(), n_faces = reader.u32(), n_materials = reader.u32();
+  const uint32_t n_textures = reader.u32(), n_lights = reader.u32();
+  // Before anything is allocated: the counts must fit the bytes that are there.
+  if (n_vertices * kVertexBytes + n_faces * kFaceBytes + n_materials * kMaterialBytes +
+          uint64_t{n_textures} * kTextureBytes + uint64_t{n_lights} * kLightBytes >
+      reader.remaining())
+    return Failure{Error::truncated, reader.position(), "model is shorter than its counts"};
+
+  raster::Scene scene;
+  scene.ambient_light = read_vec3(reader);
+  scene.background = read_vec3(reader);
+  scene.mesh.vertices.resize(static_cast<size_t>(n_vertices));
+  read_vertices(reader, scene.mesh, fields);
+  scene.mesh.faces.resize(static_cast<size_t>(n_faces));
+  PAC_CHECK(read_faces(reader, scene.mesh));
+  for (uint64_t i = 0; i < n_materials; ++i) {
+    PAC_TRY(raster::Material material, read_material(reader, n_textures));
+    scene.materials.push_back(std::move(material));
+  }
+  for (uint32_t i = 0; i < n_textures; ++i) {
+    PAC_TRY(raster::Texture texture, read_texture(reader, limits));
+    scene.textures.push_back(std::move(texture));
+  }
+  for (uint32_t i = 0; i < n_lights; ++i) {
+    PAC_TRY(raster::Light light, read_light(reader));
+    scene.lights.push_back(light);
+  }
+  if (reader.overrun()) return Failure{Error::truncated, bytes.size(), "model ends early"};
+  if (reader.remaining() != 0) return Failure{Error::corrupt, reader.position(), "bytes after the end of the model"};
+  PAC_CHECK(validate(scene.mesh, static_cast<uint32_t>(n_materials), limits));
+  return scene;
+}
+
+}  // namespace pac::sim

@@ -1,0 +1,176 @@
+// What each quantizer step would cost each DCT coefficient of a picture: histograms, then errors and entropies.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/exact_math.h"
+#include "sim/table_family.h"
+
+namespace pac::sim {
+
+namespace {
+
+// One component at its coded resolution, padded to whole blocks; samples are centered on zero.
+struct Component {
+  int width = 0, height = 0;  // multiples of 8
+  std::vector<double> samples;
+
+  Component(int w, int h)
+      : width((w + 7) / 8 * 8),
+        height((h + 7) / 8 * 8),
+        samples(static_cast<size_t>(width) * static_cast<size_t>(height)) {}
+  double& at(int x, int y) {
+    return samples[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+  }
+};
+
+// JFIF's Y, Cb, Cr of one pixel, all centered on zero.
+double color_component(const uint8_t* rgb, int component) {
+  const double r = rgb[0], g = rgb[1], b = rgb[2];
+  if (component == 0) return 0.299 * r + 0.587 * g + 0.114 * b - 128;
+  if (component == 1) return -0.168736 * r - 0.331264 * g + 0.5 * b;
+  return 0.5 * r - 0.418688 * g - 0.081312 * b;
+}
+
+// Means over x_factor x y_factor pixels; past the edge the last row and column repeat.
+Component extract(ConstRgbView image, int component, int x_factor, int y_factor) {
+  Component out((image.width + x_factor - 1) / x_factor, (image.height + y_factor - 1) / y_factor);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      double sum = 0;
+      for (int j = 0; j < y_factor; ++j)
+        for (int i = 0; i < x_factor; ++i)
+          sum += color_component(
+              image.pixel(std::min(x * x_factor + i, image.width - 1), std::min(y * y_factor + j, image.height - 1)),
+              component);
+      out.at(x, y) = sum / (x_factor * y_factor);
+    }
+  return out;
+}
+
+// cosines[u][x] of the orthonormal 8-point DCT-II.
+struct Basis {
+  double cosines[8][8];
+  Basis() {
+    for (int u = 0; u < 8; ++u)
+      for (int x = 0; x < 8; ++x)
+        cosines[u][x] = (u == 0 ? std::sqrt(0.125) : 0.5) * exact_cos((2 * x + 1) * u * kPi / 16);
+  }
+};
+
+void transform(const Basis& basis, const double in[8][8], double out[8][8]) {
+  double rows[8][8];
+  for (int y = 0; y < 8; ++y)
+    for (int u = 0; u < 8; ++u) {
+      double sum = 0;
+      for (int x = 0; x < 8; ++x) sum += in[y][x] * basis.cosines[u][x];
+      rows[y][u] = sum;
+    }
+  for (int v = 0; v < 8; ++v)
+    for (int u = 0; u < 8; ++u) {
+      double sum = 0;
+      for (int y = 0; y < 8; ++y) sum += rows[y][u] * basis.cosines[v][y];
+      out[v][u] = sum;
+    }
+}
+
+// How often each magnitude occurs, rounded to an integer (|coefficient| <= 1024); signs counted apart for DC bits.
+constexpr int kLargest = 2048;
+using Histogram = std::vector<uint32_t>;  // index 0..2*kLargest: value + kLargest
+
+struct Histograms {
+  std::vector<Histogram> coefficient = std::vector<Histogram>(64, Histogram(2 * kLargest + 1));
+  Histogram dc_step = Histogram(2 * kLargest + 1);  // DC minus the DC of the block before
+
+  void add(Component& component, const Basis& basis) {
+    int last_dc = 0;
+    for (int by = 0; by < component.height; by += 8)
+      for (int bx = 0; bx < component.width; bx += 8) {
+        double block[8][8], coefficients[8][8];
+        for (int y = 0; y < 8; ++y)
+          for (int x = 0; x < 8; ++x) block[y][x] = component.at(bx + x, by + y);
+        transform(basis, block, coefficients);
+        for (int k = 0; k < 64; ++k) ++coefficient[static_cast<size_t>(k)][bin(rounded(coefficients[k / 8][k % 8]))];
+        const int dc = rounded(coefficients[0][0]);
+        ++dc_step[bin(dc - last_dc)];
+        last_dc = dc;
+      }
+  }
+  static int rounded(double value) { return static_cast<int>(std::floor(value + 0.5)); }
+  static size_t bin(int value) { return static_cast<size_t>(std::clamp(value, -kLargest, kLargest) + kLargest); }
+};
+
+int level_of(int value, int step) {
+  const int magnitude = (std::abs(value) + step / 2) / step;
+  return value < 0 ? -magnitude : magnitude;
+}
+
+// The values that occur, ascending, with their counts: most of a histogram is empty.
+struct Occurrence {
+  int value = 0;
+  double count = 0;
+};
+
+std::vector<Occurrence> occurrences(const Histogram& histogram) {
+  std::vector<Occurrence> list;
+  for (int value = -kLargest; value <= kLargest; ++value)
+    if (const uint32_t count = histogram[static_cast<size_t>(value + kLargest)]; count > 0)
+      list.push_back({value, static_cast<double>(count)});
+  return list;
+}
+
+double squared_error(const std::vector<Occurrence>& values, int step) {
+  double sum = 0;
+  for (const Occurrence& item : values) {
+    const double error = item.value - level_of(item.value, step) * step;
+    sum += item.count * error * error;
+  }
+  return sum;
+}
+
+// Entropy of the levels times their number: n log2 n - sum of c log2 c over the levels' counts c.
+double level_bits(const std::vector<Occurrence>& values, int step) {
+  double total = 0, sum = 0;
+  for (size_t i = 0; i < values.size();) {
+    const int level = level_of(values[i].value, step);
+    double count = 0;
+    for (; i < values.size() && level_of(values[i].value, step) == level; ++i) count += values[i].count;
+    sum += count * exact_log(count);
+    total += count;
+  }
+  return total > 0 ? (total * exact_log(total) - sum) / 0.69314718055994530942 : 0;
+}
+
+void fill_costs(const Histograms& histograms, std::array<StepCosts, 64>& costs) {
+  for (size_t k = 0; k < 64; ++k) {
+    const std::vector<Occurrence> values = occurrences(histograms.coefficient[k]);
+    const std::vector<Occurrence> coded = k == 0 ? occurrences(histograms.dc_step) : values;
+    for (int step = 1; step < 256; ++step) {
+      costs[k].error[static_cast<size_t>(step)] = squared_error(values, step);
+      costs[k].bits[static_cast<size_t>(step)] = level_bits(coded, step);
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling) {
+  const Basis basis;
+  const int x_factor = subsampling == jpeg::Subsampling::yuv444 ? 1 : 2;
+  const int y_factor = subsampling == jpeg::Subsampling::yuv420 ? 2 : 1;
+  Histograms luma, chroma;
+  Component y = extract(image, 0, 1, 1);
+  luma.add(y, basis);
+  for (int component = 1; component <= 2 && subsampling != jpeg::Subsampling::gray; ++component) {
+    Component c = extract(image, component, x_factor, y_factor);
+    chroma.add(c, basis);
+  }
+  auto costs = std::make_unique<PictureCosts>();
+  fill_costs(luma, costs->luma);
+  fill_costs(chroma, costs->chroma);
+  return costs;
+}
+
+}  // namespace pac::sim
