@@ -135,8 +135,8 @@ TEST_CASE("the fitted camera sees every vertex, in every frame of its orbit and 
     for (int frame = 0; frame < 120; frame += 17) {
       const raster::Camera camera = sim::fit_camera(scene.fine, frame, aspect);
       for (const Vertex& vertex : scene.fine.mesh.vertices) {
-        const glm::vec4 clip = camera.clip_from_world *
-                               glm::vec4(vertex.position[0], vertex.position[1], vertex.position[2], 1.0f);
+        const glm::vec4 clip =
+            camera.clip_from_world * glm::vec4(vertex.position[0], vertex.position[1], vertex.position[2], 1.0f);
         REQUIRE(clip.w > 0);
         for (int axis = 0; axis < 3; ++axis) REQUIRE(std::fabs(clip[axis]) <= clip.w);
       }

@@ -26,8 +26,7 @@ uint32_t add_vertex(Mesh& mesh, double x, double y, double z, glm::vec3 normal, 
 }
 
 void add_face(Mesh& mesh, const std::vector<uint32_t>& corners, uint32_t material) {
-  mesh.faces.push_back(
-      {static_cast<uint32_t>(mesh.indices.size()), static_cast<uint32_t>(corners.size()), material});
+  mesh.faces.push_back({static_cast<uint32_t>(mesh.indices.size()), static_cast<uint32_t>(corners.size()), material});
   mesh.indices.insert(mesh.indices.end(), corners.begin(), corners.end());
 }
 
@@ -64,9 +63,8 @@ void add_ball(Mesh& mesh, int rings, uint32_t material) {
     for (int i = 0; i <= sectors; ++i) {
       const double theta = kPi * j / rings, phi = 2 * kPi * i / sectors;
       const double x = exact_sin(theta) * exact_cos(phi), y = exact_cos(theta), z = -exact_sin(theta) * exact_sin(phi);
-      add_vertex(mesh, 0.7 * x, 0.7 * y, 0.7 * z,
-                 {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)}, 3.0 * i / sectors,
-                 1.0 * j / rings, 140 + static_cast<int>(60 * y + 40 * x));
+      add_vertex(mesh, 0.7 * x, 0.7 * y, 0.7 * z, {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)},
+                 3.0 * i / sectors, 1.0 * j / rings, 140 + static_cast<int>(60 * y + 40 * x));
     }
   const auto row = static_cast<uint32_t>(sectors + 1);
   for (uint32_t j = 0; j < static_cast<uint32_t>(rings); ++j)

@@ -1,5 +1,5 @@
-// A scene that can do every split and takes no time to build: a textured floor and wall with baked colors, a lit textured
-// box, and a ball with a fine and a coarse model.
+// A scene that can do every split and takes no time to build: a textured floor and wall with baked colors, a lit
+// textured box, and a ball with a fine and a coarse model.
 #pragma once
 
 #include "raster/scene.h"
