@@ -2,43 +2,46 @@
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
 
 namespace pac::jpeg {
 namespace {
 
-struct Node {
+constexpr size_t kMaxLeaves = 257;  // 256 symbols and the one that reserves the code of all ones
+struct Leaf {
   uint64_t weight;
-  bool package;  // of two nodes of the level below, else a leaf
+  int symbol;
 };
 
-// Code lengths of leaves with ascending weights: package-merge. levels[0] holds the pairs bought with the deepest bits.
-void package_merge(std::span<const uint64_t> weights, std::span<int> lengths) {
-  const size_t n = weights.size();
-  std::vector<Node> levels[kMaxCodeLength];
+// Code lengths of leaves with ascending weights: package-merge. Level 0 holds what can be bought with the deepest bits.
+// Each level merges, by weight, the leaves with the pairs of the level below (a leaf first where they weigh the same).
+void package_merge(std::span<const Leaf> leaves, int* lengths) {
+  const size_t n = leaves.size();
+  bool is_pair[kMaxCodeLength][2 * kMaxLeaves];
+  uint64_t weights[2][2 * kMaxLeaves];
+  size_t n_below = 0;
   for (int level = 0; level < kMaxCodeLength; ++level) {
-    std::vector<Node>& nodes = levels[level];
-    const std::vector<Node> none;
-    const std::vector<Node>& below = level > 0 ? levels[level - 1] : none;
-    size_t leaf = 0, pair = 0;
-    while (leaf < n || 2 * pair + 1 < below.size()) {
-      const bool have_pair = 2 * pair + 1 < below.size();
-      const uint64_t pair_weight = have_pair ? below[2 * pair].weight + below[2 * pair + 1].weight : 0;
-      if (leaf < n && (!have_pair || weights[leaf] <= pair_weight))
-        nodes.push_back({weights[leaf++], false});
-      else
-        nodes.push_back({pair_weight, true}), ++pair;
+    const uint64_t* below = weights[(level + 1) & 1];
+    uint64_t* here = weights[level & 1];
+    size_t leaf = 0, pair = 0, n_here = 0;
+    while (leaf < n || 2 * pair + 1 < n_below) {
+      const bool have_pair = 2 * pair + 1 < n_below;
+      const uint64_t pair_weight = have_pair ? below[2 * pair] + below[2 * pair + 1] : 0;
+      const bool take_leaf = leaf < n && (!have_pair || leaves[leaf].weight <= pair_weight);
+      is_pair[level][n_here] = !take_leaf;
+      here[n_here++] = take_leaf ? leaves[leaf].weight : pair_weight;
+      (take_leaf ? leaf : pair) += 1;
     }
+    n_below = n_here;  // at most n + (2n - 1) / 2 < 2n
   }
   // The 2n - 2 cheapest nodes of the top level are bought; each leaf among them, at any level, costs its symbol a bit.
   // Within a level the bought nodes are a prefix, so the bought leaves are the lightest ones.
-  std::fill(lengths.begin(), lengths.end(), 0);
+  std::fill(lengths, lengths + n, 0);
   size_t bought = 2 * n - 2;
   for (int level = kMaxCodeLength - 1; level >= 0 && bought > 0; --level) {
-    size_t leaves = 0, packages = 0;
-    for (size_t i = 0; i < bought; ++i) (levels[level][i].package ? packages : leaves) += 1;
-    for (size_t i = 0; i < leaves; ++i) lengths[i] += 1;
-    bought = 2 * packages;
+    size_t n_pairs = 0;
+    for (size_t i = 0; i < bought; ++i) n_pairs += is_pair[level][i] ? 1 : 0;
+    for (size_t i = 0; i < bought - n_pairs; ++i) lengths[i] += 1;
+    bought = 2 * n_pairs;
   }
 }
 
@@ -79,24 +82,21 @@ void make_codes(const HuffmanSpec& spec, HuffmanCodes& codes) {
 HuffmanSpec optimal_huffman(std::span<const uint32_t, 256> frequency) {
   // Leaf 0 is nobody's symbol: it weighs nothing, so no code is longer than its, and given the last code of its length
   // (all ones) it keeps that one free.
-  struct Leaf {
-    uint64_t weight;
-    int symbol;
-  };
-  std::vector<Leaf> leaves{{0, -1}};
-  for (int symbol = 0; symbol < 256; ++symbol)
-    if (frequency[static_cast<size_t>(symbol)] > 0) leaves.push_back({frequency[static_cast<size_t>(symbol)], symbol});
+  Leaf leaves[kMaxLeaves] = {{0, -1}};
+  size_t n = 1;
+  for (size_t symbol = 0; symbol < 256; ++symbol)
+    if (frequency[symbol] > 0) leaves[n++] = {frequency[symbol], static_cast<int>(symbol)};
   HuffmanSpec spec;
-  if (leaves.size() == 1) return spec;
-  std::stable_sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) { return a.weight < b.weight; });
-  std::vector<uint64_t> weights(leaves.size());
-  std::vector<int> lengths(leaves.size());
-  for (size_t i = 0; i < leaves.size(); ++i) weights[i] = leaves[i].weight;
-  package_merge(weights, lengths);
+  if (n == 1) return spec;
+  std::sort(leaves, leaves + n, [](const Leaf& a, const Leaf& b) {
+    return a.weight != b.weight ? a.weight < b.weight : a.symbol < b.symbol;
+  });
+  int lengths[kMaxLeaves];
+  package_merge({leaves, n}, lengths);
 
   // Lengths fall as weights rise: walking from the heaviest lists the symbols by code length.
   int k = 0;
-  for (size_t i = leaves.size() - 1; i > 0; --i) {
+  for (size_t i = n - 1; i > 0; --i) {
     spec.count[lengths[i]] = static_cast<uint8_t>(spec.count[lengths[i]] + 1);
     spec.symbols[k++] = static_cast<uint8_t>(leaves[i].symbol);
   }

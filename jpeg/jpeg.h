@@ -35,23 +35,89 @@ struct QuantTables {
 // give exactly the IJG's (force_baseline) tables.
 QuantTables annex_k_tables(double quality);
 
+// Tables of a tuning at a quality in (0, 100] on the IJG scale (a flat luma step of 28 at quality 50, scaled alike).
+//   psnr    flat, chroma 0.6 times luma: least squared error of RGB for the bytes
+//   ssim    flat, chroma 1.3 times luma: structure of luma
+//   visual  Annex K's shape: the eye's contrast sensitivity
+QuantTables tuned_tables(Tune tune, double quality);
+
+// Tables for the difference image D = 127 + (H - L) / 2 [Levoy95 s.3]: every step halved, rounded up from .5, at
+// least 1. Coding D with them costs as many bytes and loses as much of H - L as coding H - L itself with `tables`
+// would.
+QuantTables halved(const QuantTables& tables);
+
 // ---- Encoding -----------------------------------------------------------------------------------------------------
+
+// Where the quantization tables come from when EncodeOptions::tables does not give them.
+enum class TableSource : uint8_t {
+  annex_k,  // annex_k_tables(quality)
+  tuned,    // tuned_tables(tune, quality)
+  adapted,  // adapted_tables(image, ..., tune, quality): rate-distortion optimal for this image; a pass more
+};
 
 struct EncodeOptions {
   double quality = 75;                // (0, 100], IJG scale, real-valued
-  std::optional<QuantTables> tables;  // instead of those that `quality` gives
+  std::optional<QuantTables> tables;  // instead of those that `quality` gives; steps 1..255
+  TableSource table_source = TableSource::annex_k;
+  Tune tune = Tune::visual;  // for TableSource::tuned and adapted
   Subsampling subsampling = Subsampling::yuv420;
   Huffman huffman = Huffman::optimal;
   int restart_interval_mcus = 0;  // 0..65535; 0 = none
   double dead_zone = 0.0;         // 0 rounds to nearest; d rounds |x|/q at 0.5 + d (0..0.49) for AC
-  bool trellis = false;           // rate-distortion choice of AC levels
-  Isa isa = best_isa();
+  bool trellis = false;           // rate-distortion choice of AC levels (then dead_zone only serves the first estimate)
+  Isa isa = best_isa();           // results never depend on it
 };
+
+// Presets: fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables and dead zone 0.14; best =
+// normal with adapted tables and trellis. fast and normal use tuned_tables(tune).
+EncodeOptions options_for(Effort effort, Tune tune, double quality);
 
 // A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).
 Result<std::vector<uint8_t>> encode(ConstRgbView image, const EncodeOptions& options = {});
 // The same of one component; options.subsampling is taken as gray.
 Result<std::vector<uint8_t>> encode_gray(PlaneView<const uint8_t> image, const EncodeOptions& options = {});
+
+// No file of such an image is longer than this, whatever the pixels and the other options. Sides 1..65535.
+uint64_t encode_bound(int width, int height, Subsampling subsampling, int restart_interval_mcus = 0);
+
+// As encode(), into the caller's buffer: the number of bytes written. Errors: also out_of_space (contents of `out` are
+// then unspecified). encode_bound() bytes always suffice.
+Result<size_t> encode_into(ConstRgbView image, const EncodeOptions& options, std::span<uint8_t> out);
+
+// The same, reusable: keeps its working memory, so that further images of the same size and options allocate nothing.
+class Encoder {
+ public:
+  Encoder();
+  ~Encoder();
+  Encoder(Encoder&&) noexcept;
+  Encoder& operator=(Encoder&&) noexcept;
+  Result<size_t> encode_into(ConstRgbView image, const EncodeOptions& options, std::span<uint8_t> out);
+  // Appends the file to `out` (which keeps its capacity when the caller clears it).
+  Result<void> encode_append(ConstRgbView image, const EncodeOptions& options, std::vector<uint8_t>& out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Tables with the least rate for their distortion, chosen step by step from the histograms of the image's DCT
+// coefficients (RD-OPT: Ratnakar and Livny, DCC 1995): minimal D + lambda R, R the entropy of the levels at each
+// frequency, D the squared error, weighted as `tune` says (visual: by Annex K's steps). lambda follows from `quality`
+// so that the bytes come near those of tuned_tables(tune, quality). Errors: as encode.
+Result<QuantTables> adapted_tables(ConstRgbView image, Subsampling subsampling, Tune tune, double quality);
+
+// The largest quality whose file, headers and all, has at most target_bytes.
+struct SizedFile {
+  std::vector<uint8_t> bytes;
+  double quality = 0;  // real-valued
+  QuantTables tables;
+};
+// Searches real-valued quality in hundredths (quarters with adapted tables); options.quality is ignored. Where
+// options.tables are given they count as the tables of quality 50 and are scaled as annex_k_tables scales. Size is
+// *not* assumed to fall with quality: after bisection, all further table sets whose size comes within 1/32 above the
+// target, and 24 beyond the last one that fits, are tried, and the largest quality that fits wins. Errors: as encode;
+// out_of_space (even the lowest quality is longer; byte_offset holds its size).
+Result<SizedFile> encode_to_size(ConstRgbView image, const EncodeOptions& options, uint64_t target_bytes);
 
 // ---- Decoding -----------------------------------------------------------------------------------------------------
 
@@ -102,5 +168,31 @@ Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits = {}
 // RGB of a complete, sound file (gray is spread to three channels). Errors: truncated, corrupt, unsupported,
 // limit_exceeded; then no picture at all.
 Result<RgbImage> decode(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
+
+// What a damaged file still holds.
+struct LenientImage {
+  RgbImage image;                  // samples that the file does not hold are gray (128 in each component)
+  std::optional<Failure> failure;  // the first thing wrong; empty: the file is sound
+  int warnings = 0;                // things wrong, and oddities that strict decoding tolerates
+};
+// As decode(), but keeps what is there when the entropy-coded data or what follows it is damaged or missing; damage
+// between restart markers costs only those intervals. Errors: as decode, in the headers before the first scan.
+Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
+
+// Strict decoding, reusable: keeps its working memory, so that further files of the same shape allocate nothing.
+class Decoder {
+ public:
+  explicit Decoder(const Limits& limits = {}, Isa isa = best_isa());
+  ~Decoder();
+  Decoder(Decoder&&) noexcept;
+  Decoder& operator=(Decoder&&) noexcept;
+  // Writes to `out`, which must have the size that read_info() tells (else bad_argument). On failure the contents of
+  // `out` are unspecified.
+  Result<void> decode_into(std::span<const uint8_t> bytes, RgbView out);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace pac::jpeg

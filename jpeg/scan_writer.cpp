@@ -50,7 +50,7 @@ ScanTables optimal_tables(const Histogram& histogram) {
   return tables;
 }
 
-ScanWriter::ScanWriter(const ScanTables& tables, ByteSink& sink) : sink_(sink) {
+void ScanWriter::set_tables(const ScanTables& tables) {
   for (size_t i = 0; i < kTableCount; ++i) {
     HuffmanCodes codes;
     make_codes(tables.spec[i], codes);

@@ -42,7 +42,9 @@ ScanTables optimal_tables(const Histogram& histogram);
 // Writes tokens as bits with the 0xFF bytes stuffed [T.81 B.1.1.5]. Call finish() at the end of the scan.
 class ScanWriter {
  public:
-  ScanWriter(const ScanTables& tables, ByteSink& sink);
+  explicit ScanWriter(ByteSink& sink) : sink_(sink) {}
+  // Before the first write.
+  void set_tables(const ScanTables& tables);
   void write(const Token* begin, const Token* end);
   // Pads the last byte with ones [T.81 F.1.2.3].
   void finish();
@@ -53,7 +55,7 @@ class ScanWriter {
   void flush_to_byte();
   void flush_chunk();
 
-  uint32_t code_and_length_[kTableCount * 256];
+  uint32_t code_and_length_[kTableCount * 256] = {};
   ByteSink& sink_;
   uint64_t pending_ = 0;  // the low n_pending_ bits wait
   int n_pending_ = 0;     // < 8 * 5 between puts

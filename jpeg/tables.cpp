@@ -34,13 +34,33 @@ constexpr HuffmanSpec kAcChroma = {
      0xc2, 0xc3, 0xc4, 0xc5, 0xc6, 0xc7, 0xc8, 0xc9, 0xca, 0xd2, 0xd3, 0xd4, 0xd5, 0xd6, 0xd7, 0xd8, 0xd9, 0xda,
      0xe2, 0xe3, 0xe4, 0xe5, 0xe6, 0xe7, 0xe8, 0xe9, 0xea, 0xf2, 0xf3, 0xf4, 0xf5, 0xf6, 0xf7, 0xf8, 0xf9, 0xfa}};
 
-QuantTable scaled(const uint8_t (&base)[64], double scale) {
+// The IJG software's percentage. Beyond 5000 / 0.1 every step is clamped anyway; that bounds the arithmetic.
+double scale_percent(double quality) {
+  const double q = !(quality >= 0.1) ? 0.1 : quality > 100.0 ? 100.0 : quality;
+  return q < 50.0 ? 5000.0 / q : 200.0 - 2.0 * q;
+}
+
+uint16_t to_step(double value) {
+  const double step = std::floor(value);
+  return static_cast<uint16_t>(step < 1.0 ? 1.0 : step > 255.0 ? 255.0 : step);
+}
+
+QuantTable scaled(const double (&base)[64], double percent) {
   QuantTable table;
-  for (size_t i = 0; i < 64; ++i) {
-    const double step = std::floor((base[i] * scale + 50.0) / 100.0);
-    table[i] = static_cast<uint16_t>(step < 1.0 ? 1.0 : step > 255.0 ? 255.0 : step);
-  }
+  for (size_t i = 0; i < 64; ++i) table[i] = to_step((base[i] * percent + 50.0) / 100.0);
   return table;
+}
+
+// Steps at quality 50.
+ReferenceSteps tuned_base(Tune tune) {
+  constexpr double kFlatLuma = 28.0;  // about as many bytes as Annex K's tables
+  ReferenceSteps base;
+  for (int i = 0; i < 64; ++i) {
+    const double chroma_ratio = tune == Tune::psnr ? 0.6 : 1.3;
+    base.luma[i] = tune == Tune::visual ? kAnnexKLuma[i] : kFlatLuma;
+    base.chroma[i] = tune == Tune::visual ? kAnnexKChroma[i] : kFlatLuma * chroma_ratio;
+  }
+  return base;
 }
 
 }  // namespace
@@ -71,11 +91,46 @@ const HuffmanSpec& standard_ac(int table) {
   return table == 0 ? kAcLuma : kAcChroma;
 }
 
+QuantTables scaled_tables(const ReferenceSteps& base, double quality) {
+  const double percent = scale_percent(quality);
+  return {scaled(base.luma, percent), scaled(base.chroma, percent)};
+}
+
 QuantTables annex_k_tables(double quality) {
-  // 5000 / q beyond every step's clamp: 0.1 already gives 255 everywhere, and bounds the arithmetic.
-  const double q = !(quality >= 0.1) ? 0.1 : quality > 100.0 ? 100.0 : quality;
-  const double scale = q < 50.0 ? 5000.0 / q : 200.0 - 2.0 * q;
-  return {scaled(kAnnexKLuma, scale), scaled(kAnnexKChroma, scale)};
+  return scaled_tables(tuned_base(Tune::visual), quality);
+}
+
+QuantTables tuned_tables(Tune tune, double quality) {
+  return scaled_tables(tuned_base(tune), quality);
+}
+
+ReferenceSteps reference_of(const QuantTables& tables) {
+  ReferenceSteps reference;
+  for (size_t i = 0; i < 64; ++i) {
+    reference.luma[i] = tables.luma[i];
+    reference.chroma[i] = tables.chroma[i];
+  }
+  return reference;
+}
+
+ReferenceSteps tuned_reference(Tune tune, double quality) {
+  ReferenceSteps reference = tuned_base(tune);
+  const double factor = scale_percent(quality) / 100.0;
+  for (size_t i = 0; i < 64; ++i) {
+    // Below half a step nothing is gained: the transform's own rounding is that large.
+    reference.luma[i] = std::fmax(reference.luma[i] * factor, 0.5);
+    reference.chroma[i] = std::fmax(reference.chroma[i] * factor, 0.5);
+  }
+  return reference;
+}
+
+QuantTables halved(const QuantTables& tables) {
+  QuantTables half;
+  for (size_t i = 0; i < 64; ++i) {
+    half.luma[i] = static_cast<uint16_t>(tables.luma[i] <= 1 ? 1 : (tables.luma[i] + 1) / 2);
+    half.chroma[i] = static_cast<uint16_t>(tables.chroma[i] <= 1 ? 1 : (tables.chroma[i] + 1) / 2);
+  }
+  return half;
 }
 
 }  // namespace pac::jpeg

@@ -1,0 +1,51 @@
+// The encoder's stages in order: coefficients -> tables -> levels -> tokens -> file.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "jpeg/byte_sink.h"
+#include "jpeg/coefficients.h"
+#include "jpeg/jpeg.h"
+#include "jpeg/table_design.h"
+#include "jpeg/tokenizer.h"
+#include "jpeg/trellis.h"
+
+namespace pac::jpeg {
+
+Result<void> check_options(const SourceImage& image, const EncodeOptions& options);
+
+// Keeps its buffers from image to image.
+class ImageEncoder {
+ public:
+  // Both arguments have passed check_options; the image's pixels are read until the last write_file().
+  // keep_coefficients: write_file() will be called more than once.
+  void start(const SourceImage& image, const EncodeOptions& options, bool keep_coefficients);
+
+  // The tables that options ask for, at that quality. options.tables count as the tables of quality 50 if
+  // `scale_tables`.
+  QuantTables tables_at(double quality, bool scale_tables) const;
+
+  // The whole file with those tables. `quality`: the one that made them, for what else depends on it.
+  void write_file(const QuantTables& tables, double quality, ByteSink& sink);
+
+ private:
+  void set_up(const QuantTables& tables, double quality);
+  void quantize(int mcu_row);
+  void measure_costs();
+  void add_mcu_row(int mcu_row);
+
+  EncodeOptions options_;
+  const Kernels* kernels_ = nullptr;
+  CoefficientSource source_;
+  TableDesigner designer_;
+  BlockQuantizer quantizers_[2];
+  TrellisWeights weights_[2];
+  AcCosts costs_[2];
+  bool use_trellis_ = false;  // costs_ are known
+  Levels levels_;
+  Tokenizer tokenizer_;
+  std::vector<Token> tokens_;
+};
+
+}  // namespace pac::jpeg
