@@ -33,7 +33,19 @@ struct LoadedScene {
   std::vector<Warning> warnings;
 };
 
-// Failure::byte_offset is the first byte of the offending line.
+// Statements v (with colors after the coordinates), vt, vn, f (all forms, negative and forward references, any number
+// of corners), usemtl, mtllib, s; g and o are skipped; others are skipped with a warning. v texture coordinates are
+// flipped: OBJ counts them upwards, Vertex::texcoord downwards. Missing normals are generated (rule in
+// load_normals.h). Faces without a material are light gray; a material or texture that cannot be found becomes a
+// magenta and white checker with a warning. Normals and texture coordinates that are not finite become 0 with a
+// warning. The scene gets the light rig of fit_camera.h and uses nothing of `bytes` afterwards. Fails, byte_offset
+// being the first byte of the offending line (after joining continued ones), with
+// - corrupt: "malformed number", "malformed index", "number is not finite", "index 0: indices start at 1", "index out
+// of
+//   range", "vertex with fewer than three coordinates", "normal with fewer than three numbers", "texture coordinate
+//   without a number";
+// - unsupported: UTF-16 text; no faces (empty file, point clouds, lines);
+// - limit_exceeded: the file is longer than limits.max_bytes, more than limits.max_triangles.
 Result<LoadedScene> load_obj(std::span<const uint8_t> bytes, const AssetSource& assets, const Limits& limits = {});
 
 }  // namespace pac::raster

@@ -1,0 +1,35 @@
+// Textures of loaded models: read once each, replaced visibly where they are missing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "raster/load_obj.h"
+#include "raster/scene.h"
+
+namespace pac::raster {
+
+// 64x64, magenta and white squares of 8 pixels: nobody takes it for the artist's.
+RgbaImage missing_texture_image();
+
+// Adds textures to `scene` and warnings to `warnings`.
+class TextureLoader {
+ public:
+  TextureLoader(const AssetSource& assets, Scene& scene, std::vector<Warning>& warnings)
+      : assets_(assets), scene_(scene), warnings_(warnings) {}
+  // The number of the texture with that file name: loaded now, loaded before, or the checker.
+  int32_t load(const std::string& name, uint64_t byte_offset);
+  // The checker's.
+  int32_t missing();
+
+ private:
+  const AssetSource& assets_;
+  Scene& scene_;
+  std::vector<Warning>& warnings_;
+  std::unordered_map<std::string, int32_t> loaded_;
+  int32_t missing_ = -1;
+};
+
+}  // namespace pac::raster
