@@ -243,7 +243,7 @@ TEST_CASE("what is missing is warned about and shows as a magenta and white chec
   REQUIRE(has_warning(*loaded, "not an image"));
   REQUIRE(loaded->scene.textures.size() == 1);
   for (size_t m = 1; m < 4; ++m) REQUIRE(loaded->scene.materials[m].texture == 0);
-  const uint8_t* pixel = loaded->scene.textures[0].levels[0].pixel(0, 0);
+  const uint8_t* pixel = &loaded->scene.textures[0].texels[0];
   REQUIRE((pixel[0] == 255 && pixel[1] == 0 && pixel[2] == 255));
   REQUIRE(has_warning(*load(kTriangle + "mtllib gone.mtl\nf 1 2 3\n"), "material library is missing"));
   REQUIRE(load(kTriangle + "f 1 2 3\n")->scene.materials[0].texture == -1);
