@@ -65,6 +65,10 @@ Content content_of(ArmKind kind) {
   return kind == ArmKind::image_based ? Content::image : Content::difference;
 }
 
+double& encode_time(Timings& timings, ArmKind kind) {
+  return kind == ArmKind::image_based ? timings.encode_image : timings.encode_difference;
+}
+
 // Everything about an arm once its file exists.
 Result<Arm> finish_arm(const Renderings& renderings, ArmKind kind, CodedImage coded, const CodingOptions& options,
                        Timings* timings) {
@@ -153,8 +157,7 @@ Result<Arm> code_arm_at_quality(const Renderings& renderings, ArmKind kind, doub
   const Stopwatch watch;
   PAC_TRY(CodedImage coded,
           code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality, options));
-  if (timings != nullptr)
-    (kind == ArmKind::image_based ? timings->encode_image : timings->encode_difference) = watch.milliseconds();
+  if (timings != nullptr) encode_time(*timings, kind) = watch.milliseconds();
   return finish_arm(renderings, kind, std::move(coded), options, timings);
 }
 
@@ -162,8 +165,11 @@ Result<Arm> code_arm_at_size(const Renderings& renderings, ArmKind kind, uint64_
                              const CodingOptions& options, Timings* timings) {
   const ConstRgbView picture = coded_picture(renderings, kind).view();
   PAC_TRY(CodedImage coded, code_at_size(picture, content_of(kind), target_bytes, options));
-  // The time of one encode, not of the search.
-  if (timings != nullptr) return code_arm_at_quality(renderings, kind, coded.quality, options, timings);
+  if (timings != nullptr) {  // of one encode, not of the search
+    const Stopwatch watch;
+    PAC_CHECK(code_at_quality(picture, content_of(kind), coded.quality, options));
+    encode_time(*timings, kind) = watch.milliseconds();
+  }
   return finish_arm(renderings, kind, std::move(coded), options, timings);
 }
 

@@ -1,14 +1,25 @@
 #include "sim/frame_renderer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim/difference.h"
 
 namespace pac::sim {
 
+namespace {
+
+bool has_texture(const raster::Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const raster::Material& material) { return material.texture >= 0; });
+}
+
+}  // namespace
+
 Result<FrameRenderer> FrameRenderer::create(const SceneSet& scene, const Split& split, bool transmit_model, int width,
                                             int height, int threads, Isa isa) {
-  if (transmit_model && split.low.texture)
+  const raster::Scene& low = split.low_model == Model::coarse ? scene.coarse : scene.fine;
+  if (transmit_model && split.low.texture && has_texture(low))
     return Failure{Error::bad_argument, 0, "a model whose low-quality rendering is textured cannot be transmitted"};
   if (width < 1 || width > 65535 || height < 1 || height > 65535)
     return Failure{Error::bad_argument, 0, "picture sides must be 1..65535"};

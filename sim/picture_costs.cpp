@@ -1,4 +1,4 @@
-// What each quantizer step would cost each DCT coefficient of a picture: histograms, then errors and entropies.
+// What a picture's DCT coefficients are like: their peaks, and what each quantizer step would cost each of them.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -76,7 +76,33 @@ void transform(const Basis& basis, const double in[8][8], double out[8][8]) {
     }
 }
 
-// How often each magnitude occurs, rounded to an integer (|coefficient| <= 1024); signs counted apart for DC bits.
+// The coefficients of every block of a component, in scan order: use(coefficients[v][u]).
+template <class Use>
+void for_each_block(Component& component, const Basis& basis, Use&& use) {
+  for (int by = 0; by < component.height; by += 8)
+    for (int bx = 0; bx < component.width; bx += 8) {
+      double block[8][8], coefficients[8][8];
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) block[y][x] = component.at(bx + x, by + y);
+      transform(basis, block, coefficients);
+      use(coefficients);
+    }
+}
+
+// Y, then Cb and Cr where they are coded: use(component, is_chroma).
+template <class Use>
+void for_each_component(ConstRgbView image, jpeg::Subsampling subsampling, Use&& use) {
+  const int x_factor = subsampling == jpeg::Subsampling::yuv444 ? 1 : 2;
+  const int y_factor = subsampling == jpeg::Subsampling::yuv420 ? 2 : 1;
+  Component luma = extract(image, 0, 1, 1);
+  use(luma, false);
+  for (int number = 1; number <= 2 && subsampling != jpeg::Subsampling::gray; ++number) {
+    Component chroma = extract(image, number, x_factor, y_factor);
+    use(chroma, true);
+  }
+}
+
+// How often each value occurs, rounded to an integer (|coefficient| <= 1024, DC differences twice that).
 constexpr int kLargest = 2048;
 using Histogram = std::vector<uint32_t>;  // index 0..2*kLargest: value + kLargest
 
@@ -86,17 +112,12 @@ struct Histograms {
 
   void add(Component& component, const Basis& basis) {
     int last_dc = 0;
-    for (int by = 0; by < component.height; by += 8)
-      for (int bx = 0; bx < component.width; bx += 8) {
-        double block[8][8], coefficients[8][8];
-        for (int y = 0; y < 8; ++y)
-          for (int x = 0; x < 8; ++x) block[y][x] = component.at(bx + x, by + y);
-        transform(basis, block, coefficients);
-        for (int k = 0; k < 64; ++k) ++coefficient[static_cast<size_t>(k)][bin(rounded(coefficients[k / 8][k % 8]))];
-        const int dc = rounded(coefficients[0][0]);
-        ++dc_step[bin(dc - last_dc)];
-        last_dc = dc;
-      }
+    for_each_block(component, basis, [&](const double(&coefficients)[8][8]) {
+      for (int k = 0; k < 64; ++k) ++coefficient[static_cast<size_t>(k)][bin(rounded(coefficients[k / 8][k % 8]))];
+      const int dc = rounded(coefficients[0][0]);
+      ++dc_step[bin(dc - last_dc)];
+      last_dc = dc;
+    });
   }
   static int rounded(double value) { return static_cast<int>(std::floor(value + 0.5)); }
   static size_t bin(int value) { return static_cast<size_t>(std::clamp(value, -kLargest, kLargest) + kLargest); }
@@ -156,17 +177,23 @@ void fill_costs(const Histograms& histograms, std::array<StepCosts, 64>& costs) 
 
 }  // namespace
 
+CoefficientPeaks measure_peaks(ConstRgbView image, jpeg::Subsampling subsampling) {
+  const Basis basis;
+  CoefficientPeaks peaks;
+  for_each_component(image, subsampling, [&](Component& component, bool is_chroma) {
+    auto& peak = is_chroma ? peaks.chroma : peaks.luma;
+    for_each_block(component, basis, [&](const double(&coefficients)[8][8]) {
+      for (size_t k = 0; k < 64; ++k) peak[k] = std::max(peak[k], std::fabs(coefficients[k / 8][k % 8]));
+    });
+  });
+  return peaks;
+}
+
 std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling) {
   const Basis basis;
-  const int x_factor = subsampling == jpeg::Subsampling::yuv444 ? 1 : 2;
-  const int y_factor = subsampling == jpeg::Subsampling::yuv420 ? 2 : 1;
   Histograms luma, chroma;
-  Component y = extract(image, 0, 1, 1);
-  luma.add(y, basis);
-  for (int component = 1; component <= 2 && subsampling != jpeg::Subsampling::gray; ++component) {
-    Component c = extract(image, component, x_factor, y_factor);
-    chroma.add(c, basis);
-  }
+  for_each_component(image, subsampling,
+                     [&](Component& component, bool is_chroma) { (is_chroma ? chroma : luma).add(component, basis); });
   auto costs = std::make_unique<PictureCosts>();
   fill_costs(luma, costs->luma);
   fill_costs(chroma, costs->chroma);

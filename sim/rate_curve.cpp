@@ -117,13 +117,13 @@ Crossing find_crossing(const RateCurve& image_based, const RateCurve& polygon_as
   for (int step = 1; step <= kSteps; ++step) {
     const double at = low + (high - low) * step / kSteps;
     const double next = lead(at);
-    if ((previous > 0) != (next > 0)) {
+    if (previous > 0 && next <= 0 && !crossing.ratio) {
       const double t = previous / (previous - next);
       crossing.ratio = raw_bytes / exact_exp(at - (high - low) / kSteps * (1 - t));
-      return crossing;
     }
     previous = next;
   }
+  crossing.assisted_wins_at_low_ratio = previous > 0;
   return crossing;
 }
 

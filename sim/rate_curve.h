@@ -42,12 +42,12 @@ std::optional<double> bytes_for_score(const RateCurve& curve, Metric metric, dou
 std::optional<double> equal_quality_gain(const RateCurve& image_based, const RateCurve& polygon_assisted, Metric metric,
                                          size_t image_based_point);
 
-// The compression ratio at which the two curves cross: above it polygon assistance has the better score at equal
-// bytes, below it the worse. Read from the score difference along the common range of bytes, coming from the
-// smallest files. Empty where one arm wins everywhere in the common range (`always` says which).
+// The compression ratio at which polygon assistance stops paying: going from the smallest files to larger ones, where
+// its score at equal bytes first falls from better to worse. Empty where that does not happen in the common range of
+// bytes; the two flags say who wins at its ends.
 struct Crossing {
   std::optional<double> ratio;
-  bool assisted_wins_at_high_ratio = false;
+  bool assisted_wins_at_high_ratio = false, assisted_wins_at_low_ratio = false;
   double lowest_common_ratio = 0, highest_common_ratio = 0;  // the range that was looked at
 };
 Crossing find_crossing(const RateCurve& image_based, const RateCurve& polygon_assisted, Metric metric);

@@ -37,8 +37,8 @@ struct ServerFrame {
 // One object, one thread at a time; distinct objects are independent.
 class Server {
  public:
-  // Takes the scene over. Fails with bad_argument (size, quality, split: transmitted models are drawn untextured, so
-  // a split whose L is textured cannot transmit).
+  // Takes the scene over. Fails with bad_argument (size, quality; a transmitted model holds no texture coordinates, so
+  // a split whose L is textured cannot transmit it).
   static Result<Server> create(SceneSet scene, Split split, const ServerOptions& options = {});
   ~Server();
   Server(Server&&) noexcept;

@@ -135,7 +135,7 @@ std::vector<Table1Claim> check_claims(const std::string& scene, const Still& sti
   const Arm& assisted = still.polygon_assisted;
   const Arm& sent = transmitted.polygon_assisted;
   const double needed = coded_quality(image.coded.quality, Content::difference);
-  return {
+  std::vector<Table1Claim> claims = {
       {"entropy_falls", "the difference image has less entropy than the high-quality rendering", true,
        r.difference_entropy.luma < r.high_entropy.luma},
       {"sizes_match", "both arms' code sizes agree within 1 %", true,
@@ -152,12 +152,21 @@ std::vector<Table1Claim> check_claims(const std::string& scene, const Still& sti
        assisted.scores.ssim > image.scores.ssim},
       {"model_within_estimate", "the transmitted model takes no more than 10/3 bytes a polygon of the model", true,
        static_cast<double>(sent.model_bytes) <= r.estimated_model_bytes},
-      {"transmitted_still_better",
-       "with the model paid for, it still looks better than image-based compression of the same total size", true,
-       sent.scores.ssim > transmitted.image_based.scores.ssim},
       {"transmitted_fits_budget", "with the model transmitted, a frame fits 2 Mb/s at 20 frames/s", false,
        sent.budget_share <= 1},
   };
+  if (scene == "room") {  // said of figure 2 alone, which lies between 2e and 2f with its model
+    const Arm& same_size = transmitted.image_based;
+    claims.push_back({"transmitted_higher_quality",
+                      "with the model paid for, its quality factor (division by two undone) is still above that of "
+                      "image-based compression of the same total size",
+                      true, sent.coded.equivalent_quality > same_size.coded.quality});
+    claims.push_back({"transmitted_still_better",
+                      "with the model paid for, it still looks better than image-based compression of the same total "
+                      "size (ours: higher structural similarity)",
+                      true, sent.scores.ssim > same_size.scores.ssim});
+  }
+  return claims;
 }
 
 std::string fixed_decimal(double number, int decimals) {

@@ -26,13 +26,25 @@ std::vector<double> annex_k_breakpoints() {
   return scales;
 }
 
-std::vector<double> annex_k_steps() {
+// Whether a level other than zero can differ between two steps of one coefficient. One unit of slack for the codec's
+// integer arithmetic.
+bool matters(const jpeg::QuantTable& a, const jpeg::QuantTable& b, const std::array<double, 64>& peaks) {
+  for (size_t k = 0; k < 64; ++k)
+    if (a[k] != b[k] && 2 * (peaks[k] + 1) >= std::min(a[k], b[k])) return true;
+  return false;
+}
+
+std::vector<double> annex_k_steps(const CoefficientPeaks& peaks) {
   const std::vector<double> breaks = annex_k_breakpoints();
-  std::vector<double> qualities;
-  qualities.push_back(100);
+  std::vector<double> qualities = {100};
+  jpeg::QuantTables last = jpeg::annex_k_tables(100);
   for (size_t i = 0; i < breaks.size(); ++i) {
     const double next = i + 1 < breaks.size() ? breaks[i + 1] : kCoarsestScale;
-    qualities.push_back(quality_from_scale(0.5 * (breaks[i] + next)));
+    const double quality = quality_from_scale(0.5 * (breaks[i] + next));
+    const jpeg::QuantTables tables = jpeg::annex_k_tables(quality);
+    if (!matters(tables.luma, last.luma, peaks.luma) && !matters(tables.chroma, last.chroma, peaks.chroma)) continue;
+    qualities.push_back(quality);
+    last = tables;
   }
   return qualities;
 }
@@ -63,7 +75,10 @@ bool same_tables(const jpeg::QuantTables& a, const jpeg::QuantTables& b) {
 Result<ScaledTables> ScaledTables::create(ConstRgbView image, TableFamily family, jpeg::Subsampling subsampling) {
   if (image.empty()) return Failure{Error::bad_argument, 0, "image has no pixels"};
   ScaledTables tables;
-  if (family == TableFamily::adapted) tables.costs_ = measure_costs(image, subsampling);
+  if (family == TableFamily::adapted)
+    tables.costs_ = measure_costs(image, subsampling);
+  else
+    tables.peaks_ = measure_peaks(image, subsampling);
   return tables;
 }
 
@@ -75,7 +90,7 @@ jpeg::QuantTables ScaledTables::at_quality(double quality) const {
 }
 
 std::vector<double> ScaledTables::step_qualities() const {
-  if (costs_ == nullptr) return annex_k_steps();
+  if (costs_ == nullptr) return annex_k_steps(peaks_);
   std::vector<double> qualities;
   jpeg::QuantTables last;
   for (double scale = kFinestScale; scale < kCoarsestScale; scale *= 1.002) {

@@ -23,6 +23,12 @@ struct PictureCosts {
   std::array<StepCosts, 64> luma, chroma;  // chroma: Cb and Cr together
 };
 
+// The largest magnitude of each coefficient over all blocks.
+struct CoefficientPeaks {
+  std::array<double, 64> luma{}, chroma{};
+};
+CoefficientPeaks measure_peaks(ConstRgbView image, jpeg::Subsampling subsampling);
+
 // Gathers them with a floating-point DCT over the picture's 8x8 blocks (edges replicated). DC counts the bits of
 // differences between neighboring blocks, as the codec does. Same bits on every machine.
 std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling);
@@ -39,11 +45,13 @@ class ScaledTables {
   // quality in (0, 100].
   jpeg::QuantTables at_quality(double quality) const;
 
-  // One quality for each distinct pair of tables (adapted: on a grid of scales 0.2 % apart), finest tables first.
+  // One quality for each pair of tables that can make another file of this picture (adapted: on a grid of scales 0.2 %
+  // apart), finest tables first. Steps that only change entries too coarse to leave any level but zero are one step.
   std::vector<double> step_qualities() const;
 
  private:
   std::shared_ptr<const PictureCosts> costs_;  // null: Annex K
+  CoefficientPeaks peaks_;                     // Annex K only
 };
 
 }  // namespace pac::sim
