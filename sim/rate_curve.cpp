@@ -117,12 +117,14 @@ Crossing find_crossing(const RateCurve& image_based, const RateCurve& polygon_as
   for (int step = 1; step <= kSteps; ++step) {
     const double at = low + (high - low) * step / kSteps;
     const double next = lead(at);
-    if (previous > 0 && next <= 0 && !crossing.ratio) {
+    if ((previous > 0) != (next > 0)) {
       const double t = previous / (previous - next);
-      crossing.ratio = raw_bytes / exact_exp(at - (high - low) / kSteps * (1 - t));
+      auto& found = previous > 0 ? crossing.ratio : crossing.behind_above;
+      if (!found) found = raw_bytes / exact_exp(at - (high - low) / kSteps * (1 - t));
     }
     previous = next;
   }
+  if (crossing.assisted_wins_at_high_ratio) crossing.behind_above.reset();
   crossing.assisted_wins_at_low_ratio = previous > 0;
   return crossing;
 }

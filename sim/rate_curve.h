@@ -44,9 +44,10 @@ std::optional<double> equal_quality_gain(const RateCurve& image_based, const Rat
 
 // The compression ratio at which polygon assistance stops paying: going from the smallest files to larger ones, where
 // its score at equal bytes first falls from better to worse. Empty where that does not happen in the common range of
-// bytes; the two flags say who wins at its ends.
+// bytes; the two flags say who wins at its ends. `behind_above`: where it is behind for the smallest files, the ratio
+// at which it first comes ahead.
 struct Crossing {
-  std::optional<double> ratio;
+  std::optional<double> ratio, behind_above;
   bool assisted_wins_at_high_ratio = false, assisted_wins_at_low_ratio = false;
   double lowest_common_ratio = 0, highest_common_ratio = 0;  // the range that was looked at
 };

@@ -120,6 +120,9 @@ ReportFinding equal_quality_claim(const FigureSet& room) {
 std::string crossing_text(const FigureSet& set, const Crossing& crossing) {
   std::string text = set.scene + ", " + set.renderings.split.name + ": ";
   if (crossing.ratio) return text + "crossing at " + decimal_text(*crossing.ratio, 0) + ":1";
+  if (crossing.behind_above)
+    return text + "polygon-assisted ahead from " + decimal_text(crossing.lowest_common_ratio, 0) + ":1 to " +
+           decimal_text(*crossing.behind_above, 0) + ":1, behind above";
   return text + (crossing.assisted_wins_at_high_ratio ? "polygon-assisted" : "image-based") + " ahead from " +
          decimal_text(crossing.lowest_common_ratio, 0) + ":1 to " + decimal_text(crossing.highest_common_ratio, 0) +
          ":1";
