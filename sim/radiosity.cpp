@@ -141,24 +141,62 @@ glm::vec3 direct_light(const std::vector<EmitterPoint>& emitters, const RayCaste
 }
 
 // Where the light that reaches a vertex is sampled: in each face that meets there, a little way towards its center, so
-// that a vertex on a wall or inside a solid still has samples in the open.
-struct GatherPoint {
-  uint32_t vertex;
-  glm::vec3 position;
-};
-
-std::vector<std::vector<GatherPoint>> gather_points(const Mesh& mesh, const std::vector<FaceShape>& shapes) {
-  constexpr float kTowardsCenter = 0.14f;
-  std::vector<std::vector<GatherPoint>> points(mesh.vertices.size());
-  for (size_t f = 0; f < mesh.faces.size(); ++f) {
-    for (uint32_t k = 0; k < mesh.faces[f].count; ++k) {
-      const uint32_t vertex = mesh.indices[mesh.faces[f].first + k];
-      const glm::vec3 corner = vertex_position(mesh, vertex);
-      points[vertex].push_back({vertex, corner + (shapes[f].center - corner) * kTowardsCenter});
-    }
+// that a vertex on a wall or inside a solid still has samples in the open; half way, where none of those is.
+class Gatherer {
+ public:
+  Gatherer(const Mesh& mesh, const std::vector<FaceOptics>& optics, const std::vector<FaceShape>& shapes,
+           const RayCaster& caster, const std::vector<EmitterPoint>& emitters, int n_rays)
+      : mesh_(mesh),
+        optics_(optics),
+        shapes_(shapes),
+        caster_(caster),
+        emitters_(emitters),
+        rays_(hemisphere_rays(n_rays)),
+        faces_of_(mesh.vertices.size()) {
+    for (uint32_t f = 0; f < mesh.faces.size(); ++f)
+      for (uint32_t k = 0; k < mesh.faces[f].count; ++k) faces_of_[mesh.indices[mesh.faces[f].first + k]].push_back(f);
   }
-  return points;
-}
+
+  // Mean irradiance over the vertex's faces at points that are `toward_center` of the way from it to their centers.
+  // False if all these points are inside solids. The rays are dealt out to the points in turn.
+  bool at_vertex(uint32_t vertex, float toward_center, const std::vector<glm::vec3>& reflected,
+                 glm::vec3* irradiance) const {
+    const glm::vec3 normal = vertex_normal(mesh_, vertex), corner = vertex_position(mesh_, vertex);
+    const TangentFrame frame(normal);
+    const std::vector<uint32_t>& faces = faces_of_[vertex];
+    glm::vec3 sum(0.0f);
+    int n_open = 0;
+    for (size_t p = 0; p < faces.size(); ++p) {
+      const glm::vec3 position = corner + (shapes_[faces[p]].center - corner) * toward_center + normal * kLift;
+      glm::vec3 indirect(0.0f);
+      int n_rays = 0, n_inside = 0;
+      for (size_t r = p; r < rays_.size(); r += faces.size()) {
+        ++n_rays;
+        RayCaster::Hit hit;
+        if (!caster_.closest(position, frame(rays_[r].direction), kFar, &hit)) continue;
+        if (hit.from_back && !optics_[hit.face].thin) {
+          ++n_inside;
+        } else {
+          indirect += reflected[hit.face];
+        }
+      }
+      if (n_rays == 0 || n_inside * 4 > n_rays) continue;  // this point is inside a solid
+      sum += indirect / static_cast<float>(n_rays) + direct_light(emitters_, &caster_, position, normal);
+      ++n_open;
+    }
+    if (n_open > 0) *irradiance = sum / static_cast<float>(n_open);
+    return n_open > 0;
+  }
+
+ private:
+  const Mesh& mesh_;
+  const std::vector<FaceOptics>& optics_;
+  const std::vector<FaceShape>& shapes_;
+  const RayCaster& caster_;
+  const std::vector<EmitterPoint>& emitters_;
+  std::vector<HemisphereRay> rays_;
+  std::vector<std::vector<uint32_t>> faces_of_;
+};
 
 // Gives vertices that lie inside solids (known[v] == 0) the mean of their neighbours, ring by ring.
 void fill_unknown(const Mesh& mesh, std::vector<uint8_t> known, std::vector<glm::vec3>* values) {
@@ -248,45 +286,19 @@ void iterate(const FormFactors& factors, const std::vector<FaceOptics>& optics, 
   }
 }
 
-void gather(const Mesh& mesh, const std::vector<FaceOptics>& optics, const std::vector<FaceShape>& shapes,
-            const std::vector<glm::vec3>& reflected, const std::vector<EmitterPoint>& emitters, const RayCaster& caster,
-            const RadiosityOptions& options, Radiosity* result) {
-  const std::vector<HemisphereRay> rays = hemisphere_rays(options.rays_per_vertex);
-  const std::vector<std::vector<GatherPoint>> points = gather_points(mesh, shapes);
-  result->vertex_irradiance.assign(mesh.vertices.size(), glm::vec3(0.0f));
-  result->vertex_local.assign(mesh.vertices.size(), glm::vec3(0.0f));
-  std::vector<uint8_t> known(mesh.vertices.size(), 0);
-  for (size_t v = 0; v < points.size(); ++v) {
-    const glm::vec3 normal = vertex_normal(mesh, static_cast<uint32_t>(v));
-    const TangentFrame frame(normal);
-    const size_t n_points = points[v].size();
-    glm::vec3 sum(0.0f);
-    int n_open = 0;
-    for (size_t p = 0; p < n_points; ++p) {
-      const glm::vec3 position = points[v][p].position + normal * kLift;
-      glm::vec3 indirect(0.0f);
-      int n_rays = 0, n_inside = 0;
-      for (size_t r = p; r < rays.size(); r += n_points) {
-        ++n_rays;
-        RayCaster::Hit hit;
-        if (!caster.closest(position, frame(rays[r].direction), kFar, &hit)) continue;
-        if (hit.from_back && !optics[hit.face].thin) {
-          ++n_inside;
-        } else {
-          indirect += reflected[hit.face];
-        }
-      }
-      if (n_rays == 0 || n_inside * 4 > n_rays) continue;  // this point is inside a solid
-      sum += indirect / static_cast<float>(n_rays) + direct_light(emitters, &caster, position, normal);
-      ++n_open;
-    }
-    if (n_points > 0)
-      result->vertex_local[v] =
-          direct_light(emitters, nullptr, vertex_position(mesh, static_cast<uint32_t>(v)) + normal * kLift, normal);
-    if (n_open > 0) {
-      result->vertex_irradiance[v] = sum / static_cast<float>(n_open);
-      known[v] = 1;
-    }
+void gather(const Mesh& mesh, const Gatherer& gatherer, const std::vector<glm::vec3>& reflected,
+            const std::vector<EmitterPoint>& emitters, Radiosity* result) {
+  const size_t n_vertices = mesh.vertices.size();
+  result->vertex_irradiance.assign(n_vertices, glm::vec3(0.0f));
+  result->vertex_local.assign(n_vertices, glm::vec3(0.0f));
+  std::vector<uint8_t> known(n_vertices, 0);
+  for (uint32_t v = 0; v < n_vertices; ++v) {
+    constexpr float kNear = 0.14f, kHalfWay = 0.5f;
+    glm::vec3* irradiance = &result->vertex_irradiance[v];
+    known[v] =
+        gatherer.at_vertex(v, kNear, reflected, irradiance) || gatherer.at_vertex(v, kHalfWay, reflected, irradiance);
+    const glm::vec3 normal = vertex_normal(mesh, v);
+    result->vertex_local[v] = direct_light(emitters, nullptr, vertex_position(mesh, v) + normal * kLift, normal);
   }
   fill_unknown(mesh, std::move(known), &result->vertex_irradiance);
 }
@@ -309,7 +321,7 @@ Radiosity solve_radiosity(const Mesh& mesh, const std::vector<FaceOptics>& optic
   iterate(form_factors(mesh, caster, optics, options.rays_per_face), optics, direct, options, &result, &reflected);
   for (size_t i = 0; i < optics.size(); ++i) result.face_radiosity.push_back(reflected[i] + optics[i].emission);
 
-  gather(mesh, optics, shapes, reflected, emitters, caster, options, &result);
+  gather(mesh, Gatherer(mesh, optics, shapes, caster, emitters, options.rays_per_vertex), reflected, emitters, &result);
   // Sunlit faces have vertices of their own (their outlines are the shadow's edges), so the sun adds at those.
   std::vector<uint8_t> sunny(mesh.vertices.size(), 0);
   for (size_t f = 0; f < mesh.faces.size(); ++f) {

@@ -115,6 +115,7 @@ void RayCaster::build(uint32_t node, uint32_t first, uint32_t count) {
   nodes_[node].count = 0;
   nodes_[node].first = left;
   nodes_[node].right = right;
+  nodes_[node].axis = axis;
 }
 
 template <bool kAny>
@@ -132,9 +133,10 @@ bool RayCaster::trace(const glm::vec3& origin, const glm::vec3& direction, float
     const float leave = std::min(std::min(far.x, far.y), std::min(far.z, limit));
     if (!(enter <= leave)) continue;
     if (node.count == 0) {
-      if (depth + 2 > kMaxDepth * 2) return found;  // cannot happen below 2^64 triangles
-      stack[depth++] = node.right;
-      stack[depth++] = node.first;
+      if (depth + 2 > kMaxDepth * 2) return found;       // cannot happen below 2^64 triangles
+      const bool upwards = direction[node.axis] > 0.0f;  // the nearer child on top
+      stack[depth++] = upwards ? node.right : node.first;
+      stack[depth++] = upwards ? node.first : node.right;
       continue;
     }
     for (uint32_t i = node.first; i < node.first + node.count; ++i) {

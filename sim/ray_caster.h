@@ -31,10 +31,11 @@ class RayCaster {
     glm::vec3 corner, edge1, edge2;
     uint32_t face;
   };
-  // Children of an inner node are next to it (left) and at `right`; a leaf has `count` triangles from `first`.
+  // The children of an inner node (count 0) are at `first` and `right`; a leaf has `count` triangles from `first`.
   struct Node {
     glm::vec3 low, high;
     uint32_t first = 0, count = 0, right = 0;
+    int axis = 0;  // the left child is the lower one along it
   };
   void build(uint32_t node, uint32_t first, uint32_t count);
   template <bool kAny>

@@ -92,7 +92,7 @@ void SceneBuilder::patch(glm::vec3 origin, glm::vec3 edge_s, glm::vec3 edge_t, i
 }
 
 void SceneBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t material, unsigned sides, glm::ivec3 cuts,
-                       float texture_size) {
+                       glm::vec2 repeat) {
   const glm::vec3 size = high - low;
   const glm::vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
   // Each box starts elsewhere in the texture, so that neighbours do not look cut from the same board.
@@ -102,7 +102,7 @@ void SceneBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t material, unsigne
     const float length_s = glm::length(s), length_t = glm::length(t);
     const bool turned = length_s > length_t;
     const float across = turned ? length_t : length_s, along = turned ? length_s : length_t;
-    patch(origin, s, t, n_s, n_t, material, {start, start, across / texture_size, along / texture_size, turned});
+    patch(origin, s, t, n_s, n_t, material, {start, start, across / repeat.x, along / repeat.y, turned});
   };
   side(kFront, low + z, x, y, cuts.x, cuts.y);
   side(kBack, low + x, -x, y, cuts.x, cuts.y);

@@ -43,10 +43,10 @@ class SceneBuilder {
 
   // Which sides of a box to make, and how finely its sides are cut along each axis.
   enum Sides : unsigned { kLeft = 1, kRight = 2, kBottom = 4, kTop = 8, kBack = 16, kFront = 32, kAll = 63 };
-  // An axis-parallel box (in the current frame); texture_size = the side of the texture in metres (repeats), grain
-  // along the longest side of each face.
+  // An axis-parallel box (in the current frame). `repeat` = metres a repeat of the texture across and along the longer
+  // side of each face.
   void box(glm::vec3 low, glm::vec3 high, uint32_t material, unsigned sides = kAll, glm::ivec3 cuts = glm::ivec3(1),
-           float texture_size = 1.0f);
+           glm::vec2 repeat = glm::vec2(0.25f, 1.0f));
 
   // A surface of revolution about the vertical through `center`: profile points (radius, height) from the lowest up,
   // outside seen from outside (`inward`: from the axis). A radius of 0 makes triangles.

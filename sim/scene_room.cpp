@@ -19,23 +19,24 @@ size_t add_everything(SceneBuilder& builder, const RoomMaterials& m, uint32_t se
   add_shell(builder, m);
   add_window(builder, m);
   add_fireplace(builder, m);
-  place(builder, 3.72f, 0, 0.0f);
+  place(builder, 3.58f, 0, 0.0f);
   add_bookshelf(builder, m, seed + 50u);
   place(builder, 0.32f, 0, 0.0f);
   add_cabinet(builder, m);
-  add_vase(builder, m, {0.30f, 0.78f, 0.20f});
   add_book(builder, m, {0.55f, 0.78f, 0.10f}, {0.80f, 0.82f, 0.29f});
   place(builder, 4.15f, 0, 1.75f, -0.75);
   add_armchair(builder, m);
-  place(builder, 4.95f, 0, 0.95f);
+  place(builder, 4.82f, 0, 0.95f);
   add_lamp(builder, m);
-  place(builder, 1.85f, 0, 4.05f, 0.12);
+  place(builder, 1.85f, 0, 4.2f, 0.12);
   add_table(builder, m);
-  add_fruit_bowl(builder, m, {0.10f, 0.75f, -0.05f});
-  add_book(builder, m, {-0.45f, 0.75f, 0.02f}, {-0.20f, 0.785f, 0.22f});
-  place(builder, 0.95f, 0, 4.15f, 1.5);
+  add_vase(builder, m, {-0.02f, 0.75f, -0.12f});
+  add_fruit(builder, {0.28f, 0.79f, 0.05f}, 0.042f, m.apple);
+  add_fruit(builder, {0.36f, 0.789f, 0.14f}, 0.040f, m.orange);
+  add_book(builder, m, {0.08f, 0.75f, 0.10f}, {0.22f, 0.78f, 0.30f});
+  place(builder, 2.85f, 0, 4.2f, -1.35);
   add_chair(builder, m);
-  place(builder, 2.15f, 0, 3.35f, 0.2);
+  place(builder, 1.6f, 0, 3.5f, 0.1);
   add_chair(builder, m);
   place(builder, 0, 0, 0);
   add_painting(builder, m, m.landscape, {2.4f, 1.92f, 0.46f}, {1, 0, 0}, {0, 0, 1}, 0.96f, 0.72f);
@@ -47,7 +48,7 @@ size_t add_everything(SceneBuilder& builder, const RoomMaterials& m, uint32_t se
 
 // Exposure, then a shoulder that keeps the sun's patch below white: what a display shows of an irradiance.
 double tone(double irradiance) {
-  constexpr double kExposure = 1.15, kWhite = 3.2;
+  constexpr double kExposure = 1.5, kWhite = 4.0;
   const double x = irradiance * kExposure;
   return x * (1.0 + x / (kWhite * kWhite)) / (1.0 + x);
 }
@@ -91,7 +92,7 @@ SceneSet build_room(uint32_t seed) {
   std::vector<FaceOptics> optics;
   for (size_t f = 0; f < mesh.faces.size(); ++f) {
     optics.push_back(builder.optics(mesh.faces[f].material));
-    if (f >= first_sunny) optics[f].sun = glm::vec3(6.4f, 5.4f, 3.9f);
+    if (f >= first_sunny) optics[f].sun = glm::vec3(9.0f, 7.6f, 5.4f);
   }
   const Radiosity light = solve_radiosity(mesh, optics);
   const std::vector<uint8_t> colors = vertex_colors(set.fine, optics, light.vertex_irradiance);
@@ -107,8 +108,8 @@ raster::Camera room_camera(int frame, float aspect) {
   // A walk: from the corner towards the fire and back, the gaze wandering from window to shelf.
   const double phase = 2.0 * kPi * static_cast<double>(frame % 240) / 240.0;
   const auto near = static_cast<float>(0.5 - 0.5 * exact_cos(phase)), side = static_cast<float>(exact_sin(phase));
-  const glm::vec3 eye(4.5f - 1.0f * near + 0.35f * side, 1.55f, 6.1f - 1.3f * near);
-  const glm::vec3 target(2.25f + 0.25f * near - 0.6f * side, 1.02f, 1.0f);
+  const glm::vec3 eye(4.35f - 1.0f * near + 0.35f * side, 1.55f, 6.15f - 1.3f * near);
+  const glm::vec3 target(2.13f + 0.25f * near - 0.6f * side, 1.0f, 1.0f);
   return raster::make_camera(eye, target, {0, 1, 0}, 1.06f, aspect, 0.1f, 20.0f);
 }
 

@@ -36,14 +36,14 @@ void add_lamp(SceneBuilder& builder, const RoomMaterials& materials);
 
 // Small things (scene_room_objects.cpp).
 void add_vase(SceneBuilder& builder, const RoomMaterials& materials, glm::vec3 foot);
-void add_fruit_bowl(SceneBuilder& builder, const RoomMaterials& materials, glm::vec3 foot);
+void add_fruit(SceneBuilder& builder, glm::vec3 center, float radius, uint32_t material);
 void add_book(SceneBuilder& builder, const RoomMaterials& materials, glm::vec3 low, glm::vec3 high);
 // Hangs on a wall: `center` on the wall, `right` along it, `out` into the room (unit vectors).
 void add_painting(SceneBuilder& builder, const RoomMaterials& materials, uint32_t canvas, glm::vec3 center,
                   glm::vec3 right, glm::vec3 out, float width, float height);
 
 // The way sunlight travels, x = 1: through the window, down, a little towards the camera.
-constexpr float kSunDown = 0.78f, kSunForward = 0.16f;
+constexpr float kSunDown = 0.66f, kSunForward = 0.30f;
 
 // The window opening in the left wall.
 constexpr float kWindowNear = 2.8f, kWindowFar = 1.2f, kWindowSill = 0.85f, kWindowTop = 2.25f;

@@ -9,7 +9,7 @@ RoomMaterials add_room_materials(SceneBuilder& builder, uint32_t seed) {
   using raster::Wrap;
   RoomMaterials m{};
   m.floor = builder.add_texture("oak planks", oak_planks(512, 512, seed + 1u));
-  m.wall = builder.add_texture("plaster", plaster(256, 256, rgb8(228, 208, 170), seed + 2u));
+  m.wall = builder.add_texture("plaster", plaster(256, 256, rgb8(236, 218, 182), seed + 2u));
   m.ceiling = builder.add_color("ceiling", rgb8(238, 232, 220));
   m.beam = builder.add_texture("old timber", wood_grain(128, 256, rgb8(134, 92, 58), rgb8(66, 42, 26), seed + 3u));
   m.trim = builder.add_color("white trim", rgb8(232, 226, 212));
@@ -42,7 +42,7 @@ RoomMaterials add_room_materials(SceneBuilder& builder, uint32_t seed) {
   m.orange = builder.add_color("orange", rgb8(232, 136, 36));
 
   // Radiosity that the emitters give off, in units in which a white sheet in the shade of the room is near 0.3.
-  builder.set_emission(m.glass, glm::vec3(7.4f, 8.6f, 10.2f));
+  builder.set_emission(m.glass, glm::vec3(5.0f, 5.6f, 6.4f));
   builder.set_emission(m.shade, glm::vec3(3.4f, 2.3f, 1.15f));
   builder.set_emission(m.bulb, glm::vec3(26.0f, 18.0f, 9.0f));
   builder.set_emission(m.ember, glm::vec3(14.0f, 5.0f, 1.2f));

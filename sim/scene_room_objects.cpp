@@ -5,20 +5,16 @@ namespace pac::sim {
 
 void add_vase(SceneBuilder& builder, const RoomMaterials& m, glm::vec3 foot) {
   builder.revolve(foot,
-                  {{0.05f, 0.0f}, {0.10f, 0.09f}, {0.105f, 0.16f}, {0.05f, 0.26f}, {0.045f, 0.30f}, {0.07f, 0.35f}}, 9,
-                  m.porcelain, false, 2.0f);
+                  {{0.05f, 0.0f}, {0.105f, 0.08f}, {0.115f, 0.16f}, {0.06f, 0.25f}, {0.045f, 0.29f}, {0.07f, 0.34f}},
+                  10, m.porcelain, false, 2.0f);
 }
 
-void add_fruit_bowl(SceneBuilder& builder, const RoomMaterials& m, glm::vec3 foot) {
-  builder.revolve(foot, {{0.06f, 0.0f}, {0.13f, 0.04f}, {0.17f, 0.10f}}, 10, m.porcelain, false, 3.0f);
-  builder.revolve(foot, {{0.0f, 0.03f}, {0.165f, 0.10f}}, 10, m.porcelain, true, 3.0f);
-  const auto fruit = [&](glm::vec3 at, float r, uint32_t material) {
-    builder.revolve(foot + at, {{0.0f, -r}, {0.82f * r, -0.45f * r}, {0.92f * r, 0.40f * r}, {0.0f, 0.92f * r}}, 6,
-                    material);
-  };
-  fruit({-0.06f, 0.115f, 0.03f}, 0.062f, m.apple);
-  fruit({0.065f, 0.115f, 0.02f}, 0.060f, m.orange);
-  fruit({0.0f, 0.125f, -0.07f}, 0.060f, m.apple);
+void add_fruit(SceneBuilder& builder, glm::vec3 center, float radius, uint32_t material) {
+  std::vector<glm::vec2> profile;
+  for (const glm::vec2 p : {glm::vec2(0.0f, -0.95f), glm::vec2(0.80f, -0.55f), glm::vec2(0.98f, 0.20f),
+                            glm::vec2(0.55f, 0.82f), glm::vec2(0.0f, 0.86f)})
+    profile.push_back(p * radius);
+  builder.revolve(center, profile, 7, material);
 }
 
 void add_book(SceneBuilder& builder, const RoomMaterials& m, glm::vec3 low, glm::vec3 high) {
@@ -35,7 +31,7 @@ void add_painting(SceneBuilder& builder, const RoomMaterials& m, uint32_t canvas
   constexpr float kBorder = 0.07f, kDepth = 0.05f, kRecess = 0.02f;
   const auto at = [&](float x, float y, float z) { return center + right * x + up * y + out * z; };
   const float w = 0.5f * width, h = 0.5f * height, ow = w + kBorder, oh = h + kBorder;
-  builder.patch(at(-w, -h, kRecess), right * width, up * height, 2, 2, canvas);
+  builder.patch(at(-w, -h, kRecess), right * width, up * height, 1, 1, canvas);
   // A molding that slopes from its outer edge down to the canvas, and its sides.
   const glm::vec2 inner[4] = {{-w, -h}, {w, -h}, {w, h}, {-w, h}},
                   outer[4] = {{-ow, -oh}, {ow, -oh}, {ow, oh}, {-ow, oh}};

@@ -8,6 +8,7 @@ namespace {
 constexpr float kW = kRoomWidth, kD = kRoomDepth, kH = kRoomHeight;
 constexpr float kPlankRepeat = 0.84f, kPlankLength = 1.68f;  // metres a repeat of the floor's texture
 constexpr float kWallRepeat = 1.5f;
+const glm::vec2 kTimber(0.22f, 0.88f);  // metres a repeat of the timber's texture, across and along the grain
 
 std::vector<float> scaled(std::vector<float> metres, float length) {
   for (float& line : metres) line /= length;
@@ -35,7 +36,7 @@ void add_shell(SceneBuilder& builder, const RoomMaterials& m) {
       scaled({0.0f, 1.2f, 2.0f, 2.5f, 2.95f, 3.4f, 3.85f, 4.3f, 4.75f, 5.2f, 5.6f, 6.0f, kD}, kD);
   builder.grid({0, 0, kD}, {kW, 0, 0}, {0, 0, -kD}, floor_x, floor_z, m.floor,
                {0, 0, kW / kPlankRepeat, kD / kPlankLength}, kNoHoles);
-  builder.patch({0, kH, 0}, {kW, 0, 0}, {0, 0, kD}, 7, 8, m.ceiling);
+  builder.patch({0, kH, 0}, {kW, 0, 0}, {0, 0, kD}, 7, 6, m.ceiling);
   // Back wall, open behind the chimney.
   const std::vector<float> back = {0, 0.4f, 0.8f, 1.2f, 1.6f, 3.2f, 3.6f, 4.05f, 4.5f, 4.95f, kW};
   builder.grid({0, 0, 0}, {kW, 0, 0}, {0, kH, 0}, scaled(back, kW), heights, m.wall, repeats(kW, kH, kWallRepeat),
@@ -44,16 +45,20 @@ void add_shell(SceneBuilder& builder, const RoomMaterials& m) {
   const std::vector<float> left = {0, 1.6f, 2.4f, 3.0f, kD - kWindowNear, 4.13f, 4.67f, kD - kWindowFar, 5.8f, kD};
   builder.grid({0, 0, kD}, {0, 0, -kD}, {0, kH, 0}, scaled(left, kD), heights, m.wall, repeats(kD, kH, kWallRepeat),
                [](int i, int j) { return i >= 4 && i <= 6 && j >= 2 && j <= 4; });
-  builder.patch({kW, 0, 0}, {0, 0, kD}, {0, kH, 0}, 6, 4, m.wall, repeats(kD, kH, kWallRepeat));
-  builder.patch({kW, 0, kD}, {-kW, 0, 0}, {0, kH, 0}, 4, 3, m.wall, repeats(kW, kH, kWallRepeat));
+  builder.patch({kW, 0, 0}, {0, 0, kD}, {0, kH, 0}, 5, 3, m.wall, repeats(kD, kH, kWallRepeat));
+  builder.patch({kW, 0, kD}, {-kW, 0, 0}, {0, kH, 0}, 2, 2, m.wall, repeats(kW, kH, kWallRepeat));
   // Skirting boards and ceiling beams.
   using B = SceneBuilder;
   builder.box({0, 0, 0}, {0.02f, 0.11f, kD}, m.trim, B::kRight | B::kTop, {1, 1, 4});
-  builder.box({kW - 0.02f, 0, 0}, {kW, 0.11f, kD}, m.trim, B::kLeft | B::kTop, {1, 1, 3});
+  builder.box({kW - 0.02f, 0, 0}, {kW, 0.11f, kD}, m.trim, B::kLeft | B::kTop);
   builder.box({0, 0, 0}, {1.6f, 0.11f, 0.02f}, m.trim, B::kFront | B::kTop, {2, 1, 1});
   builder.box({3.2f, 0, 0}, {kW, 0.11f, 0.02f}, m.trim, B::kFront | B::kTop, {2, 1, 1});
-  for (const float z : {0.75f, 2.25f, 3.75f, 5.25f})
-    builder.box({0, kH - 0.2f, z}, {kW, kH, z + 0.17f}, m.beam, B::kFront | B::kBack | B::kBottom, {4, 1, 1}, 0.6f);
+  int beam_cuts = 4;
+  for (const float z : {0.75f, 2.25f, 3.75f, 5.25f}) {
+    builder.box({0, kH - 0.2f, z}, {kW, kH, z + 0.17f}, m.beam, B::kFront | B::kBack | B::kBottom, {beam_cuts, 1, 1},
+                kTimber);
+    if (z > 2.0f) beam_cuts = 3;  // the farther from the still's view, the fewer
+  }
 }
 
 void add_window(SceneBuilder& builder, const RoomMaterials& m) {
@@ -117,7 +122,8 @@ void add_fireplace(SceneBuilder& builder, const RoomMaterials& m) {
                [](int i, int j) { return (i == 1 || i == 2) && j < 2; });
   builder.grid({kWide, 0, kDeep}, {0, 0, -kDeep}, {0, kH, 0}, equal_lines(1), ys, m.brick, repeats(kDeep, kH, kBrick),
                kNoHoles);
-  builder.grid({0, 0, 0}, {0, 0, kDeep}, {0, kH, 0}, equal_lines(1), ys, m.brick, repeats(kDeep, kH, kBrick), kNoHoles);
+  builder.grid({0, 0, 0}, {0, 0, kDeep}, {0, kH, 0}, equal_lines(1), equal_lines(2), m.brick,
+               repeats(kDeep, kH, kBrick), kNoHoles);
   // The firebox, with its logs on the embers.
   const float w = kOpenHigh - kOpenLow, back = 0.08f, d = kDeep - back;
   builder.patch({kOpenLow, 0, back}, {w, 0, 0}, {0, kOpenTop, 0}, 2, 2, m.brick, repeats(w, kOpenTop, kBrick));
@@ -126,12 +132,14 @@ void add_fireplace(SceneBuilder& builder, const RoomMaterials& m) {
   builder.patch({kOpenLow, kOpenTop, back}, {w, 0, 0}, {0, 0, d}, 1, 1, m.soot);
   builder.patch({kOpenLow, 0.062f, kDeep}, {w, 0, 0}, {0, 0, -d}, 1, 1, m.soot);
   builder.patch({0.55f, 0.085f, 0.38f}, {0.5f, 0, 0}, {0, 0.02f, -0.22f}, 1, 1, m.ember);
-  builder.box({0.52f, 0.10f, 0.30f}, {1.10f, 0.19f, 0.39f}, m.beam, B::kAll & ~B::kBottom & ~B::kBack, {1, 1, 1}, 0.5f);
-  builder.box({0.60f, 0.12f, 0.16f}, {1.06f, 0.21f, 0.25f}, m.beam, B::kAll & ~B::kBottom & ~B::kBack, {1, 1, 1}, 0.5f);
+  builder.box({0.52f, 0.10f, 0.30f}, {1.10f, 0.19f, 0.39f}, m.beam, B::kAll & ~B::kBottom & ~B::kBack, {1, 1, 1},
+              kTimber);
+  builder.box({0.60f, 0.12f, 0.16f}, {1.06f, 0.21f, 0.25f}, m.beam, B::kAll & ~B::kBottom & ~B::kBack, {1, 1, 1},
+              kTimber);
   // Hearth slab and mantelpiece with two brackets.
   builder.box({-0.2f, 0, 0.0f}, {kWide + 0.2f, 0.06f, 0.95f}, m.stone, B::kTop | B::kFront | B::kLeft | B::kRight,
-              {4, 1, 2}, 0.9f);
-  builder.box({-0.14f, 1.24f, 0.3f}, {kWide + 0.14f, 1.33f, 0.72f}, m.walnut, B::kAll & ~B::kBack, {4, 1, 1}, 0.7f);
+              {3, 1, 1}, {0.9f, 0.9f});
+  builder.box({-0.14f, 1.24f, 0.3f}, {kWide + 0.14f, 1.33f, 0.72f}, m.walnut, B::kAll & ~B::kBack, {3, 1, 1}, kTimber);
   for (const float x : {0.12f, kWide - 0.24f})
     builder.box({x, 1.04f, kDeep}, {x + 0.12f, 1.24f, 0.64f}, m.walnut, B::kFront | B::kLeft | B::kRight | B::kBottom);
 }
@@ -153,7 +161,7 @@ Polygon clip(const Polygon& polygon, int axis, float limit, float sign) {
 }
 
 struct RugPlace {
-  float x0 = 1.25f, x1 = 3.85f, z0 = 1.95f, z1 = 3.7f, y = 0.012f;
+  float x0 = 1.75f, x1 = 4.05f, z0 = 2.35f, z1 = 3.9f, y = 0.012f;
 };
 
 // One pane's light on the plane at height y: the pane's corners moved along the sun's way.
@@ -172,7 +180,7 @@ size_t add_rug_and_sun(SceneBuilder& builder, const RoomMaterials& m) {
   builder.place(glm::vec3(0.0f));
   const RugPlace rug;
   const float w = rug.x1 - rug.x0, d = rug.z1 - rug.z0;
-  builder.patch({rug.x0, rug.y, rug.z1}, {w, 0, 0}, {0, 0, -d}, 8, 6, m.rug);
+  builder.patch({rug.x0, rug.y, rug.z1}, {w, 0, 0}, {0, 0, -d}, 6, 5, m.rug);
   using B = SceneBuilder;
   builder.box({rug.x0, 0, rug.z0}, {rug.x1, rug.y, rug.z1}, m.cushion, B::kFront | B::kLeft | B::kRight);
 

@@ -11,9 +11,10 @@ namespace pac::sim {
 
 // Surfaces (textures_surfaces.cpp).
 RgbaImage oak_planks(int width, int height, uint32_t seed);  // tiles; 6 boards across, grain along v
-RgbaImage wood_grain(int width, int height, glm::vec3 light, glm::vec3 dark, uint32_t seed);  // tiles; grain along v
-RgbaImage brick_wall(int width, int height, uint32_t seed);                // tiles; 4 bricks by 12 courses
-RgbaImage plaster(int width, int height, glm::vec3 color, uint32_t seed);  // tiles
+RgbaImage wood_grain(int width, int height, glm::vec3 light, glm::vec3 dark,
+                     uint32_t seed);                         // tiles; grain along v, one repeat 4 times as long as wide
+RgbaImage brick_wall(int width, int height, uint32_t seed);  // tiles; 4 bricks by 12 courses
+RgbaImage plaster(int width, int height, glm::vec3 color, uint32_t seed);                       // tiles
 RgbaImage wallpaper(int width, int height, glm::vec3 ground, glm::vec3 figure, uint32_t seed);  // tiles
 RgbaImage marble(int width, int height, glm::vec3 ground, glm::vec3 vein, uint32_t seed);       // tiles
 RgbaImage flagstones(int width, int height, uint32_t seed);                                    // tiles; irregular slabs

@@ -74,10 +74,12 @@ inline float gradient_noise(float x, float y, int period_x, int period_y, uint32
                                              {-1, 0}, {-0.7071068f, -0.7071068f}, {0, -1}, {0.7071068f, -0.7071068f}};
   const float floor_x = std::floor(x), floor_y = std::floor(y);
   const float fx = x - floor_x, fy = y - floor_y;
-  const auto wrap = [](int i, int period) { return static_cast<uint32_t>(((i % period) + period) % period); };
-  const int ix = static_cast<int>(floor_x), iy = static_cast<int>(floor_y);
-  const uint32_t x0 = wrap(ix, period_x), x1 = wrap(ix + 1, period_x);
-  const uint32_t y0 = wrap(iy, period_y), y1 = wrap(iy + 1, period_y);
+  const auto wrap = [](float cell, int period) {  // the lattice is small: an int holds every cell
+    const int i = static_cast<int>(cell) % period;
+    return static_cast<uint32_t>(i < 0 ? i + period : i);
+  };
+  const uint32_t x0 = wrap(floor_x, period_x), x1 = x0 + 1 == static_cast<uint32_t>(period_x) ? 0 : x0 + 1;
+  const uint32_t y0 = wrap(floor_y, period_y), y1 = y0 + 1 == static_cast<uint32_t>(period_y) ? 0 : y0 + 1;
   const auto corner = [&](uint32_t cx, uint32_t cy, float dx, float dy) {
     const float* g = kGradients[hash_u32(cx, cy, seed) >> 29];
     return g[0] * dx + g[1] * dy;

@@ -7,8 +7,8 @@ namespace pac::sim {
 namespace {
 
 struct Palette {
-  glm::vec3 red = rgb8(136, 32, 34), navy = rgb8(30, 38, 74), cream = rgb8(224, 206, 168), gold = rgb8(192, 142, 70),
-            teal = rgb8(62, 104, 104), rust = rgb8(174, 82, 52), dark = rgb8(34, 22, 26);
+  glm::vec3 red = rgb8(164, 44, 42), navy = rgb8(44, 54, 100), cream = rgb8(238, 222, 186), gold = rgb8(210, 162, 88),
+            teal = rgb8(84, 132, 130), rust = rgb8(198, 102, 68), dark = rgb8(34, 22, 26);
 };
 
 // |p| in a rosette of `n` petals: < 1 inside.

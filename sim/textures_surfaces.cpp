@@ -37,7 +37,7 @@ float grain(float across, float along, uint32_t board) {
 
 RgbaImage oak_planks(int width, int height, uint32_t seed) {
   constexpr int kBoards = 6;
-  const glm::vec3 light = rgb8(214, 165, 108), dark = rgb8(128, 80, 42), gap = rgb8(52, 32, 20);
+  const glm::vec3 light = rgb8(232, 190, 136), dark = rgb8(158, 106, 62), gap = rgb8(52, 32, 20);
   return paint(width, height, [&](float u, float v) {
     const float column = std::floor(u * kBoards);
     const auto c = static_cast<uint32_t>(column);
@@ -58,14 +58,16 @@ RgbaImage oak_planks(int width, int height, uint32_t seed) {
 }
 
 RgbaImage wood_grain(int width, int height, glm::vec3 light, glm::vec3 dark, uint32_t seed) {
-  // Cross-fading two cuts of the same timber makes both seams vanish.
   return paint(width, height, [&](float u, float v) {
-    const float a = grain(u, v * 4.0f, seed);
+    // Cross-fading two cuts of the same timber near the far edges makes both seams vanish.
     const float du = smooth_step(0.75f, 1.0f, u), dv = smooth_step(0.85f, 1.0f, v);
-    const float c = grain(u - 1.0f, v * 4.0f, seed), d = grain(u, (v - 1.0f) * 4.0f, seed);
-    const float e = grain(u - 1.0f, (v - 1.0f) * 4.0f, seed);
-    const float top = a + (c - a) * du, bottom = d + (e - d) * du;
-    const float g = top + (bottom - top) * dv;
+    float g = grain(u, v * 4.0f, seed);
+    if (du > 0.0f) g += (grain(u - 1.0f, v * 4.0f, seed) - g) * du;
+    if (dv > 0.0f) {
+      float next = grain(u, (v - 1.0f) * 4.0f, seed);
+      if (du > 0.0f) next += (grain(u - 1.0f, (v - 1.0f) * 4.0f, seed) - next) * du;
+      g += (next - g) * dv;
+    }
     const float mottle = fractal_noise(u * 2.0f, v * 3.0f, 2, 3, 3, seed + 77u);
     return blend(light, dark, g) * (1.0f + 0.12f * mottle);
   });
