@@ -48,7 +48,7 @@ size_t add_everything(SceneBuilder& builder, const RoomMaterials& m, uint32_t se
 
 // Exposure, then a shoulder that keeps the sun's patch below white: what a display shows of an irradiance.
 double tone(double irradiance) {
-  constexpr double kExposure = 1.5, kWhite = 4.0;
+  constexpr double kExposure = 1.2, kWhite = 4.0;
   const double x = irradiance * kExposure;
   return x * (1.0 + x / (kWhite * kWhite)) / (1.0 + x);
 }
