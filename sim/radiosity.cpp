@@ -303,6 +303,16 @@ void gather(const Mesh& mesh, const Gatherer& gatherer, const std::vector<glm::v
   fill_unknown(mesh, std::move(known), &result->vertex_irradiance);
 }
 
+glm::vec3 mean_reflected(const std::vector<FaceShape>& shapes, const std::vector<glm::vec3>& reflected) {
+  glm::vec3 sum(0.0f);
+  float area = 0.0f;
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    sum += reflected[i] * shapes[i].area;
+    area += shapes[i].area;
+  }
+  return area > 0.0f ? sum / area : sum;
+}
+
 }  // namespace
 
 Radiosity solve_radiosity(const Mesh& mesh, const std::vector<FaceOptics>& optics, const RadiosityOptions& options) {
@@ -322,6 +332,8 @@ Radiosity solve_radiosity(const Mesh& mesh, const std::vector<FaceOptics>& optic
   for (size_t i = 0; i < optics.size(); ++i) result.face_radiosity.push_back(reflected[i] + optics[i].emission);
 
   gather(mesh, Gatherer(mesh, optics, shapes, caster, emitters, options.rays_per_vertex), reflected, emitters, &result);
+  const glm::vec3 ambient = mean_reflected(shapes, reflected);
+  for (glm::vec3& local : result.vertex_local) local += ambient;
   // Sunlit faces have vertices of their own (their outlines are the shadow's edges), so the sun adds at those.
   std::vector<uint8_t> sunny(mesh.vertices.size(), 0);
   for (size_t f = 0; f < mesh.faces.size(); ++f) {

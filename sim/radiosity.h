@@ -47,7 +47,9 @@ FormFactors form_factors(const Mesh& mesh, const RayCaster& caster, const std::v
 struct Radiosity {
   std::vector<glm::vec3> face_radiosity;     // what leaves each face
   std::vector<glm::vec3> vertex_irradiance;  // what arrives at each vertex, all bounces
-  std::vector<glm::vec3> vertex_local;       // straight from the emitters, as if nothing stood between; no sun
+  // Local lighting: straight from the emitters as if nothing stood between, no sun, plus one ambient term for the room,
+  // the mean over all surfaces of what they reflect.
+  std::vector<glm::vec3> vertex_local;
   int iterations = 0;
   float residual = 0;
 };

@@ -79,7 +79,7 @@ SceneSet build_cubes(uint32_t seed) {
 }
 
 raster::Camera cubes_camera(int frame, float aspect) {
-  return orbit_camera(frame, aspect, {0.0f, 0.0f, 0.0f}, 8.2f, 2.6f, 0.15, 96, 0.78f);
+  return orbit_camera(frame, aspect, {0.0f, 0.0f, 0.0f}, 9.4f, 2.9f, 0.12, 96, 0.80f);
 }
 
 }  // namespace pac::sim

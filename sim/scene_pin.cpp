@@ -70,6 +70,14 @@ struct Basis {
   }
 };
 
+glm::vec3 place(const Patch& patch, float along, float around) {
+  const Basis a(along), b(around);
+  glm::vec3 position(0.0f);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) position += patch.control[i][j] * (a.value[i] * b.value[j]);
+  return position;
+}
+
 Micropoint evaluate(const Patch& patch, float along, float around) {
   const Basis a(along), b(around);
   glm::vec3 position(0.0f), d_along(0.0f), d_around(0.0f);
@@ -145,14 +153,13 @@ Paint surface_pattern(const glm::vec3& p, uint32_t seed) {
 }
 
 // The surface shader: three diffuse lights, their highlights, and a Fresnel-weighted mirror of the studio.
-glm::vec3 shade(const Micropoint& point, const glm::vec3& eye, uint32_t seed) {
+glm::vec3 shade(const Micropoint& point, const Paint& paint, const glm::vec3& eye) {
   struct PinLight {
     glm::vec3 direction, color;  // towards the light
   };
   const PinLight lights[] = {{glm::normalize(glm::vec3(-0.75f, 0.62f, 0.80f)), {0.92f, 0.88f, 0.80f}},
                              {glm::normalize(glm::vec3(0.95f, 0.15f, 0.25f)), {0.16f, 0.20f, 0.28f}},
                              {glm::normalize(glm::vec3(0.35f, 0.80f, -0.75f)), {0.30f, 0.30f, 0.34f}}};
-  const Paint paint = surface_pattern(point.position, seed);
   const glm::vec3& n = point.normal;
   const glm::vec3 to_eye = glm::normalize(eye - point.position);
   const float sky = 0.5f + 0.5f * n.y;
@@ -186,8 +193,28 @@ glm::vec3 still_eye() {
   return {0.0f, 9.0f, 42.0f};
 }
 
-// Dices every patch into n_up x n_around micropolygons. Patches share the vertices of their common edges.
-Mesh dice(int n_up, int n_around, uint32_t seed) {
+// The pattern's mean over the micropolygon around a vertex, cell_along x cell_around in patch parameters: as shaders
+// filter what is finer than their sampling.
+Paint filtered_pattern(const Patch& patch, float along, float around, float cell_along, float cell_around, int n,
+                       uint32_t seed) {
+  Paint mean{glm::vec3(0.0f), 0.0f};
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const float s = (static_cast<float>(i) + 0.5f) / static_cast<float>(n) - 0.5f;
+      const float t = (static_cast<float>(j) + 0.5f) / static_cast<float>(n) - 0.5f;
+      // Cells at a patch's rim reach a little into the next one; the Bezier form continues there closely enough.
+      const Paint paint = surface_pattern(place(patch, along + s * cell_along, around + t * cell_around), seed);
+      mean.color += paint.color;
+      mean.gloss += paint.gloss;
+    }
+  }
+  const float scale = 1.0f / static_cast<float>(n * n);
+  return {mean.color * scale, mean.gloss * scale};
+}
+
+// Dices every patch into n_up x n_around micropolygons. Patches share the vertices of their common edges. The pattern
+// is filtered by filter x filter samples a micropolygon.
+Mesh dice(int n_up, int n_around, int filter, uint32_t seed) {
   Mesh mesh;
   const auto columns = static_cast<uint32_t>(kQuadrants * n_around);
   const int rows = kRings * n_up;
@@ -203,7 +230,10 @@ Mesh dice(int n_up, int n_around, uint32_t seed) {
       const uint32_t quadrant = column / static_cast<uint32_t>(n_around);
       const float around =
           static_cast<float>(column - quadrant * static_cast<uint32_t>(n_around)) / static_cast<float>(n_around);
-      const Micropoint point = evaluate(patches[static_cast<size_t>(ring)][quadrant], along, around);
+      const Patch& patch = patches[static_cast<size_t>(ring)][quadrant];
+      const Micropoint point = evaluate(patch, along, around);
+      const Paint paint = filtered_pattern(patch, along, around, 1.0f / static_cast<float>(n_up),
+                                           1.0f / static_cast<float>(n_around), filter, seed);
       Vertex vertex;
       for (int c = 0; c < 3; ++c) {
         vertex.position[c] = point.position[c];
@@ -211,7 +241,7 @@ Mesh dice(int n_up, int n_around, uint32_t seed) {
       }
       vertex.texcoord[0] = static_cast<float>(column) / static_cast<float>(columns);
       vertex.texcoord[1] = 1.0f - static_cast<float>(row) / static_cast<float>(rows);
-      encode_color(shade(point, still_eye(), seed), vertex.color);
+      encode_color(shade(point, paint, still_eye()), vertex.color);
       mesh.vertices.push_back(vertex);
     }
   }
@@ -247,8 +277,8 @@ raster::Scene pin_scene(const char* name, Mesh mesh) {
 
 SceneSet build_pin(uint32_t seed) {
   SceneSet set;
-  set.fine = pin_scene("pin", dice(kFineRate, kFineRate, seed));
-  set.coarse = pin_scene("pin-coarse", dice(kCoarseUp, kCoarseAround, seed));
+  set.fine = pin_scene("pin", dice(kFineRate, kFineRate, 2, seed));
+  set.coarse = pin_scene("pin-coarse", dice(kCoarseUp, kCoarseAround, 6, seed));
   set.width = 320;
   set.height = 800;
   set.default_split = "tessellation";

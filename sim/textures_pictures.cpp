@@ -38,14 +38,35 @@ glm::vec3 sky(float u, float v, uint32_t seed, const glm::vec3& zenith, const gl
 
 }  // namespace
 
+namespace {
+
+// Where the landscape's layers begin in one column of the picture, from far to near.
+struct Skyline {
+  float far_ridge, near_ridge, shore, bank;
+};
+
+std::vector<Skyline> landscape_skyline(int width, uint32_t seed) {
+  std::vector<Skyline> columns;
+  for (int x = 0; x < width; ++x) {
+    const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
+    Skyline column;
+    column.far_ridge = 0.40f - 0.17f * std::fabs(fbm(u * 2.6f, 0.5f, 5, seed + 1u)) -
+                       0.10f * smooth_step(0.35f, 0.0f, std::fabs(u - 0.66f));
+    column.near_ridge = 0.50f - 0.16f * fbm(u * 3.0f, 3.5f, 5, seed + 2u);
+    column.shore = 0.66f + 0.05f * fbm(u * 3.0f, 9.5f, 4, seed + 3u);
+    column.bank = 0.86f - 0.14f * smooth_step(0.75f, 0.0f, u) + 0.06f * fbm(u * 5.0f, 14.5f, 4, seed + 4u);
+    columns.push_back(column);
+  }
+  return columns;
+}
+
+}  // namespace
+
 RgbaImage painted_landscape(int width, int height, uint32_t seed) {
+  const std::vector<Skyline> skyline = landscape_skyline(width, seed);
   RgbaImage image = paint(width, height, [&](float u, float v) {
+    const auto& [far_ridge, near_ridge, shore, bank] = skyline[static_cast<size_t>(u * static_cast<float>(width))];
     const float ragged = fbm(u * 22.0f, v * 22.0f, 3, seed + 20u);
-    const float far_ridge = 0.40f - 0.17f * std::fabs(fbm(u * 2.6f, 0.5f, 5, seed + 1u)) -
-                            0.10f * smooth_step(0.35f, 0.0f, std::fabs(u - 0.66f));
-    const float near_ridge = 0.50f - 0.16f * fbm(u * 3.0f, 3.5f, 5, seed + 2u);
-    const float shore = 0.66f + 0.05f * fbm(u * 3.0f, 9.5f, 4, seed + 3u);
-    const float bank = 0.86f - 0.14f * smooth_step(0.75f, 0.0f, u) + 0.06f * fbm(u * 5.0f, 14.5f, 4, seed + 4u);
     glm::vec3 color = sky(u, v * 1.6f, seed, rgb8(84, 128, 176), rgb8(244, 214, 170));
     if (v > far_ridge) {
       const float snow =
@@ -65,13 +86,13 @@ RgbaImage painted_landscape(int width, int height, uint32_t seed) {
     }
     if (v > bank + 0.02f * ragged)
       color = blend(rgb8(66, 72, 34), rgb8(168, 150, 62), 0.4f + 1.4f * fbm(u * 30.0f, v * 18.0f, 4, seed + 9u));
-    // Two trees on the left bank.
-    for (int k = 0; k < 3; ++k) {
+    // Three trees on the left bank.
+    const float leaf = u < 0.6f ? fbm(u * 26.0f, v * 20.0f, 4, seed + 12u) : 0.0f;
+    for (int k = 0; k < 3 && u < 0.6f; ++k) {
       const float tx = 0.12f + 0.13f * static_cast<float>(k), top = 0.20f + 0.12f * static_cast<float>(k % 2);
       const float trunk = std::fabs(u - tx - 0.015f * fbm(v * 5.0f, tx * 9.0f, 2, seed + 11u));
       if (trunk < 0.010f && v > top + 0.2f && v < 0.92f) color = rgb8(62, 44, 34);
       const float dx = (u - tx) / 0.10f, dy = (v - top - 0.18f) / 0.19f;
-      const float leaf = fbm(u * 26.0f, v * 20.0f, 4, seed + 12u);
       if (dx * dx + dy * dy + 1.4f * leaf < 0.75f)
         color = blend(rgb8(34, 56, 30), rgb8(148, 140, 52), 0.35f + 1.1f * leaf - 0.35f * dx - 0.25f * dy);
     }
@@ -190,6 +211,7 @@ RgbaImage painted_abstract(int width, int height, uint32_t seed) {
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   RgbaImage image = paint(width, height, [&](float u, float v) {
     glm::vec3 color = blend(rgb8(226, 208, 170), rgb8(196, 160, 118), 0.5f + fbm(u * 3.0f, v * 3.0f, 5, seed + 1u));
+    const float wash = 0.9f + 0.5f * fbm(u * 12.0f, v * 12.0f, 3, seed + 2u);
     for (const Shape& shape : shapes) {
       const float dx = (u - shape.x) * aspect, dy = v - shape.y;
       const float px = (dx * shape.cosine + dy * shape.sine) / shape.size,
@@ -204,7 +226,7 @@ RgbaImage painted_abstract(int width, int height, uint32_t seed) {
       } else {
         inside = px > -0.8f && px < 1.2f && std::fabs(py) < 0.4f * (1.2f - px) ? 1.0f : 0.0f;
       }
-      color = blend(color, shape.color * (0.9f + 0.5f * fbm(u * 12.0f, v * 12.0f, 3, seed + 2u)), 0.88f * inside);
+      color = blend(color, shape.color * wash, 0.88f * inside);
     }
     return color;
   });
