@@ -1,9 +1,292 @@
+// 8x8 blocks, two at a time: each 128-bit half does to its block what block_sse41.cpp does; nothing crosses the halves
+// between loading and storing. An odd last block goes through both halves and is stored once.
+#include <immintrin.h>
+
+#include <cstddef>
+#include <cstdint>
+
 #include "base/kernels/block_kernels.h"
 
 namespace pac {
+namespace {
+
+// The scalar file's constants: round(c * 2^13).
+constexpr int k0_541 = 4433, k0_765 = 6270, k1_847 = 15137, k1_175 = 9633, k1_961 = 16069, k0_390 = 3196;
+constexpr int k0_298 = 2446, k2_053 = 16819, k3_072 = 25172, k1_501 = 12299, k0_899 = 7373, k2_562 = 20995;
+
+// One row of the first block in the low half, of the second in the high half.
+struct Block {
+  __m256i v[8];
+};
+
+__m128i load(const void* p) {
+  return _mm_loadu_si128(static_cast<const __m128i*>(p));
+}
+__m256i twice(__m128i v) {
+  return _mm256_broadcastsi128_si256(v);
+}
+__m256i join(__m128i first, __m128i second) {
+  return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
+}
+void store(void* p, __m128i v) {
+  _mm_storeu_si128(static_cast<__m128i*>(p), v);
+}
+__m128i first_of(__m256i v) {
+  return _mm256_castsi256_si128(v);
+}
+__m128i second_of(__m256i v) {
+  return _mm256_extracti128_si256(v, 1);
+}
+
+Block transpose(const Block& b) {
+  const __m256i a0 = _mm256_unpacklo_epi16(b.v[0], b.v[1]), a1 = _mm256_unpackhi_epi16(b.v[0], b.v[1]);
+  const __m256i a2 = _mm256_unpacklo_epi16(b.v[2], b.v[3]), a3 = _mm256_unpackhi_epi16(b.v[2], b.v[3]);
+  const __m256i a4 = _mm256_unpacklo_epi16(b.v[4], b.v[5]), a5 = _mm256_unpackhi_epi16(b.v[4], b.v[5]);
+  const __m256i a6 = _mm256_unpacklo_epi16(b.v[6], b.v[7]), a7 = _mm256_unpackhi_epi16(b.v[6], b.v[7]);
+  const __m256i c0 = _mm256_unpacklo_epi32(a0, a2),
+                c1 = _mm256_unpackhi_epi32(a0, a2);  // columns 0 1, 2 3 of rows 0..3
+  const __m256i c2 = _mm256_unpacklo_epi32(a1, a3), c3 = _mm256_unpackhi_epi32(a1, a3);  // columns 4 5, 6 7
+  const __m256i c4 = _mm256_unpacklo_epi32(a4, a6), c5 = _mm256_unpackhi_epi32(a4, a6);  // the same of rows 4..7
+  const __m256i c6 = _mm256_unpacklo_epi32(a5, a7), c7 = _mm256_unpackhi_epi32(a5, a7);
+  return {{_mm256_unpacklo_epi64(c0, c4), _mm256_unpackhi_epi64(c0, c4), _mm256_unpacklo_epi64(c1, c5),
+           _mm256_unpackhi_epi64(c1, c5), _mm256_unpacklo_epi64(c2, c6), _mm256_unpackhi_epi64(c2, c6),
+           _mm256_unpacklo_epi64(c3, c7), _mm256_unpackhi_epi64(c3, c7)}};
+}
+
+// Eight 32-bit values in two vectors.
+struct Wide {
+  __m256i low, high;
+};
+Wide operator+(const Wide& a, const Wide& b) {
+  return {_mm256_add_epi32(a.low, b.low), _mm256_add_epi32(a.high, b.high)};
+}
+Wide operator-(const Wide& a, const Wide& b) {
+  return {_mm256_sub_epi32(a.low, b.low), _mm256_sub_epi32(a.high, b.high)};
+}
+
+// Two vectors' lanes side by side, ready for pmaddwd.
+struct Pairs {
+  __m256i low, high;
+};
+Pairs interleave(__m256i a, __m256i b) {
+  return {_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b)};
+}
+// a * ca + b * cb of the interleaved a and b; exact: both factors are 16-bit.
+Wide multiply(const Pairs& ab, int ca, int cb) {
+  const __m256i factors =
+      _mm256_set1_epi32(static_cast<int>(static_cast<uint32_t>(cb) << 16 | (static_cast<uint32_t>(ca) & 0xFFFF)));
+  return {_mm256_madd_epi16(ab.low, factors), _mm256_madd_epi16(ab.high, factors)};
+}
+
+// (x + 2^(s-1)) >> s, saturated to 16 bits.
+template <int kShift>
+__m256i round_shift(const Wide& x) {
+  const __m256i half = _mm256_set1_epi32(1 << (kShift - 1));
+  return _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(x.low, half), kShift),
+                            _mm256_srai_epi32(_mm256_add_epi32(x.high, half), kShift));
+}
+
+// One dimension, forward. First pass: shift 11, two bits of fraction stay; second: shift 15.
+template <bool kIsFirst>
+void fdct_1d(Block& x) {
+  constexpr int kShift = kIsFirst ? 11 : 15;
+  const __m256i sum07 = _mm256_add_epi16(x.v[0], x.v[7]), difference07 = _mm256_sub_epi16(x.v[0], x.v[7]);
+  const __m256i sum16 = _mm256_add_epi16(x.v[1], x.v[6]), difference16 = _mm256_sub_epi16(x.v[1], x.v[6]);
+  const __m256i sum25 = _mm256_add_epi16(x.v[2], x.v[5]), difference25 = _mm256_sub_epi16(x.v[2], x.v[5]);
+  const __m256i sum34 = _mm256_add_epi16(x.v[3], x.v[4]), difference34 = _mm256_sub_epi16(x.v[3], x.v[4]);
+
+  const __m256i even0 = _mm256_add_epi16(sum07, sum34), even3 = _mm256_sub_epi16(sum07, sum34);
+  const __m256i even1 = _mm256_add_epi16(sum16, sum25), even2 = _mm256_sub_epi16(sum16, sum25);
+  const auto scale = [](__m256i v) {
+    // The second pass's sums reach -2^15 .. 2^15 - 2^8: adding 2 cannot overflow.
+    return kIsFirst ? _mm256_slli_epi16(v, 2) : _mm256_srai_epi16(_mm256_add_epi16(v, _mm256_set1_epi16(2)), 2);
+  };
+  x.v[0] = scale(_mm256_add_epi16(even0, even1));
+  x.v[4] = scale(_mm256_sub_epi16(even0, even1));
+  const Pairs even23 = interleave(even2, even3);
+  x.v[2] = round_shift<kShift>(multiply(even23, k0_541, k0_541 + k0_765));
+  x.v[6] = round_shift<kShift>(multiply(even23, k0_541 - k1_847, k0_541));
+
+  const Pairs z =
+      interleave(_mm256_add_epi16(difference34, difference16), _mm256_add_epi16(difference25, difference07));
+  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
+  const Pairs outer = interleave(difference34, difference07), inner = interleave(difference25, difference16);
+  x.v[7] = round_shift<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
+  x.v[1] = round_shift<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
+  x.v[5] = round_shift<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
+  x.v[3] = round_shift<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
+}
+
+__m128i load_8(const uint8_t* p) {
+  return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
+}
+
+void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16_t* coefficients) {
+  for (size_t i = 0; i < n_blocks; i += 2) {
+    const bool is_pair = i + 1 < n_blocks;
+    Block block;
+    for (int row = 0; row < 8; ++row) {
+      const uint8_t* p = samples + row * stride + 8 * i;
+      const __m256i words = is_pair ? _mm256_cvtepu8_epi16(load(p)) : twice(_mm_cvtepu8_epi16(load_8(p)));
+      block.v[row] = _mm256_sub_epi16(words, _mm256_set1_epi16(128));
+    }
+    block = transpose(block);
+    fdct_1d<true>(block);
+    block = transpose(block);
+    fdct_1d<false>(block);
+    for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 8 * row, first_of(block.v[row]));
+    if (!is_pair) return;
+    for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 64 + 8 * row, second_of(block.v[row]));
+  }
+}
+
+// One dimension, inverse: columns round away 11 bits, rows 18. The 16-bit additions wrap, as the contract says.
+template <int kShift>
+void idct_1d(Block& x) {
+  const Pairs even26 = interleave(x.v[2], x.v[6]);
+  const Wide even2 = multiply(even26, k0_541 + k0_765, k0_541), even3 = multiply(even26, k0_541, k0_541 - k1_847);
+  const auto shift_left_13 = [](__m256i v) {
+    const __m256i zero = _mm256_setzero_si256();
+    return Wide{_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, v), 3),
+                _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, v), 3)};
+  };
+  const Wide even0 = shift_left_13(_mm256_add_epi16(x.v[0], x.v[4]));
+  const Wide even1 = shift_left_13(_mm256_sub_epi16(x.v[0], x.v[4]));
+  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
+
+  const Pairs z = interleave(_mm256_add_epi16(x.v[7], x.v[3]), _mm256_add_epi16(x.v[5], x.v[1]));
+  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
+  const Pairs odd71 = interleave(x.v[7], x.v[1]), odd53 = interleave(x.v[5], x.v[3]);
+  const Wide b0 = multiply(odd71, k0_298 - k0_899, -k0_899) + odd3;
+  const Wide b1 = multiply(odd53, k2_053 - k2_562, -k2_562) + odd4;
+  const Wide b2 = multiply(odd53, -k2_562, k3_072 - k2_562) + odd3;
+  const Wide b3 = multiply(odd71, -k0_899, k1_501 - k0_899) + odd4;
+  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
+  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
+  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
+  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+}
+
+// Only the DC level: every sample is the same. Returns it eight times.
+__m128i idct_dc(int level, int step) {
+  const auto dc = static_cast<int16_t>(static_cast<uint16_t>(level * step));
+  const __m128i value = _mm_set1_epi16(dc);
+  const __m128i column = _mm_adds_epi16(_mm_adds_epi16(value, value), _mm_adds_epi16(value, value));
+  // (4 dc + 16) >> 5 in the contract's saturated form; the saturated addition only meets values that clamp anyway.
+  const __m128i row = _mm_srai_epi16(_mm_adds_epi16(column, _mm_set1_epi16(16)), 5);
+  return _mm_xor_si128(_mm_packs_epi16(row, row), _mm_set1_epi8(static_cast<char>(0x80)));
+}
+
+// Both rows' 16 samples, or the first block's 8.
+void store_row(uint8_t* p, __m128i samples, bool is_pair) {
+  if (is_pair)
+    store(p, samples);
+  else
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(p), samples);
+}
+
+void idct_pair(const int16_t* levels, const uint16_t* steps, bool is_pair, uint8_t* samples, ptrdiff_t stride) {
+  Block block;
+  for (int row = 0; row < 8; ++row) {
+    const __m128i first = load(levels + 8 * row);
+    const __m256i both = is_pair ? join(first, load(levels + 64 + 8 * row)) : twice(first);
+    block.v[row] = _mm256_mullo_epi16(both, twice(load(steps + 8 * row)));
+  }
+  idct_1d<11>(block);
+  block = transpose(block);
+  idct_1d<18>(block);
+  block = transpose(block);
+  const __m256i center = _mm256_set1_epi8(static_cast<char>(0x80));  // adds 128 to a signed byte
+  for (int row = 0; row < 8; row += 2) {
+    // (row of first, next row of first | row of second, next row of second) -> rows of both side by side
+    const __m256i bytes = _mm256_xor_si256(_mm256_packs_epi16(block.v[row], block.v[row + 1]), center);
+    const __m256i rows = _mm256_permute4x64_epi64(bytes, 0xD8);
+    store_row(samples + row * stride, first_of(rows), is_pair);
+    store_row(samples + (row + 1) * stride, second_of(rows), is_pair);
+  }
+}
+
+void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* last, size_t n_blocks, uint8_t* samples,
+                ptrdiff_t stride) {
+  for (size_t i = 0; i < n_blocks; i += 2, levels += 128, samples += 16) {
+    const bool is_pair = i + 1 < n_blocks;
+    if (last[i] == 0 && (!is_pair || last[i + 1] == 0)) {
+      const __m128i first = idct_dc(levels[0], steps[0]);
+      const __m128i both = is_pair ? _mm_unpacklo_epi64(first, idct_dc(levels[64], steps[0])) : first;
+      for (int y = 0; y < 8; ++y) store_row(samples + y * stride, both, is_pair);
+    } else {
+      idct_pair(levels, steps, is_pair, samples, stride);
+    }
+  }
+}
+
+// pshufb masks that bring to each vector of eight zigzag positions what it takes from each natural row; -1 gives zero.
+struct ZigzagMasks {
+  alignas(16) int8_t mask[8][8][16];  // [output vector][natural row]
+};
+constexpr ZigzagMasks make_zigzag_masks() {
+  ZigzagMasks masks{};
+  for (int out = 0; out < 8; ++out)
+    for (int row = 0; row < 8; ++row)
+      for (int lane = 0; lane < 8; ++lane) {
+        const int natural = kNaturalFromZigzag[8 * out + lane];
+        const bool is_here = natural / 8 == row;
+        masks.mask[out][row][2 * lane] = static_cast<int8_t>(is_here ? natural % 8 * 2 : -1);
+        masks.mask[out][row][2 * lane + 1] = static_cast<int8_t>(is_here ? natural % 8 * 2 + 1 : -1);
+      }
+  return masks;
+}
+constexpr ZigzagMasks kZigzag = make_zigzag_masks();
+
+// Zigzag positions 8 kOut .. 8 kOut + 7, which lie in these natural rows only.
+template <int kOut, int... kRows>
+__m256i gather(const Block& natural) {
+  __m256i result = _mm256_setzero_si256();
+  ((result = _mm256_or_si256(result, _mm256_shuffle_epi8(natural.v[kRows], twice(load(kZigzag.mask[kOut][kRows]))))),
+   ...);
+  return result;
+}
+Block zigzag_from_natural(const Block& b) {
+  return {{gather<0, 0, 1, 2>(b), gather<1, 0, 1, 2, 3, 4>(b), gather<2, 1, 2, 3, 4, 5, 6>(b), gather<3, 0, 1, 2, 3>(b),
+           gather<4, 4, 5, 6, 7>(b), gather<5, 1, 2, 3, 4, 5, 6>(b), gather<6, 3, 4, 5, 6, 7>(b),
+           gather<7, 5, 6, 7>(b)}};
+}
+
+void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size_t n_blocks, int16_t* levels,
+              uint64_t* nonzero) {
+  for (size_t i = 0; i < n_blocks; i += 2, coefficients += 128, levels += 128) {
+    const bool is_pair = i + 1 < n_blocks;
+    Block block;
+    for (int row = 0; row < 8; ++row) {
+      const __m128i first = load(coefficients + 8 * row);
+      const __m256i c = is_pair ? join(first, load(coefficients + 64 + 8 * row)) : twice(first);
+      const __m256i n = _mm256_add_epi16(_mm256_abs_epi16(c), twice(load(quantizer.bias + 8 * row)));
+      const __m256i level = _mm256_mulhi_epu16(_mm256_mulhi_epu16(n, twice(load(quantizer.reciprocal + 8 * row))),
+                                               twice(load(quantizer.scale + 8 * row)));
+      block.v[row] = _mm256_sign_epi16(level, c);  // c == 0 gives 0, as its level does
+    }
+    block = zigzag_from_natural(block);
+    uint64_t first_zeros = 0, second_zeros = 0;
+    for (int k = 0; k < 8; k += 2) {
+      const __m256i bytes = _mm256_packs_epi16(block.v[k], block.v[k + 1]);  // zero exactly where the level is
+      const auto mask = static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes, _mm256_setzero_si256())));
+      first_zeros |= static_cast<uint64_t>(mask & 0xFFFF) << 8 * k;
+      second_zeros |= static_cast<uint64_t>(mask >> 16) << 8 * k;
+    }
+    for (int k = 0; k < 8; ++k) store(levels + 8 * k, first_of(block.v[k]));
+    nonzero[i] = ~first_zeros;
+    if (!is_pair) return;
+    for (int k = 0; k < 8; ++k) store(levels + 64 + 8 * k, second_of(block.v[k]));
+    nonzero[i + 1] = ~second_zeros;
+  }
+}
+
+}  // namespace
 
 void fill_block_avx2(BlockKernels& table) {
-  static_cast<void>(table);
+  table.fdct_islow = fdct_islow;
+  table.idct_islow = idct_islow;
+  table.quantize = quantize;
 }
 
 }  // namespace pac

@@ -20,7 +20,8 @@ constexpr uint8_t kNaturalFromZigzag[64] = {0,  1,  8,  16, 9,  2,  3,  10, 17, 
 struct alignas(64) BlockQuantizer {
   uint16_t reciprocal[64];
   uint16_t scale[64];  // powers of two: the second multiplication is a right shift by a count of its own in each lane
-  uint16_t bias[64];   // added to |x| before the division: divisor / 2 rounds to nearest, less is a dead zone
+  uint16_t bias[64];   // added to |x| before the division: divisor / 2 rounds to nearest, less is a dead zone;
+                       // below the divisor, so that 0 stays 0
 };
 
 struct BlockKernels {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace pac::test {
 
@@ -47,7 +48,7 @@ constexpr Pattern kPatterns[] = {Pattern::zeros,   Pattern::lowest,   Pattern::h
                                  Pattern::stripes, Pattern::sparse,   Pattern::dc_only,    Pattern::ramp,
                                  Pattern::random,  Pattern::extremes, Pattern::basis_signs};
 
-inline const char* pattern_name(Pattern pattern) {
+inline std::string pattern_name(Pattern pattern) {
   constexpr const char* kNames[] = {"zeros",   "lowest", "highest", "alternating", "stripes",    "sparse",
                                     "dc_only", "ramp",   "random",  "extremes",    "basis_signs"};
   return kNames[static_cast<size_t>(pattern)];
@@ -62,8 +63,8 @@ inline bool basis_is_negative(uint64_t index, size_t at) {
 }
 
 // Fills `out` with integers from [low, high] (0 counts as the range's nearest value).
-template <class T>
-void fill(std::span<T> out, Pattern pattern, int64_t low, int64_t high, uint64_t seed) {
+template <class T, size_t kExtent>
+void fill(std::span<T, kExtent> out, Pattern pattern, int64_t low, int64_t high, uint64_t seed) {
   Random random(seed * 64 + static_cast<uint64_t>(pattern));
   const int64_t zero = low > 0 ? low : high < 0 ? high : 0;
   for (size_t i = 0; i < out.size(); ++i) {

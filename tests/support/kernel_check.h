@@ -17,6 +17,7 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/kernels/kernels.h"
@@ -38,7 +39,7 @@ inline std::vector<const Kernels*> other_tables() {
 template <class Fn>
 void for_each_isa(Fn&& fn) {
   for (const Kernels* table : other_tables()) {
-    const char* const isa = isa_name(table->isa);
+    const std::string isa = isa_name(table->isa);
     CAPTURE(isa);
     fn(*kernels_for(Isa::scalar), *table);
   }
