@@ -179,7 +179,7 @@ ReportFinding budget_claim(const PaperResults& results) {
 
 double ssim_gain(const FigureSet& set) {
   if (set.pairs.empty()) return 0;
-  const MatchedPair& pair = set.pairs[0];
+  const MatchedPair& pair = set.pairs.back();
   return pair.polygon_assisted.scores.ssim - pair.image_based.scores.ssim;
 }
 

@@ -73,44 +73,39 @@ const FigureText* find_text(const std::string& key) {
   return nullptr;
 }
 
+// The last pair is the one that is enlarged; those before it form two rows.
 void add_pairs(FigureBuilder& builder, const FigureSet& set) {
-  const bool single = set.pairs.size() == 1;
-  const auto name = [&](const char* arm, size_t i) { return std::string(arm) + (single ? "" : std::to_string(i + 1)); };
-  builder.begin_row(single ? "Both arms at matched bytes" : "Image-based: JPEG of H");
-  for (size_t i = 0; i < set.pairs.size(); ++i)
-    builder.add_arm(set.renderings, set.pairs[i].image_based, ArmKind::image_based, set.pairs[i].image_label,
-                    name("image", i));
-  if (!single) builder.begin_row("Polygon-assisted: L plus JPEG of D, at the same bytes as the picture above");
-  for (size_t i = 0; i < set.pairs.size(); ++i)
-    builder.add_arm(set.renderings, set.pairs[i].polygon_assisted, ArmKind::polygon_assisted,
-                    set.pairs[i].assisted_label, name("polygon", i));
+  const size_t n_rows = set.pairs.size() - 1;
+  const auto add = [&](size_t i, ArmKind kind, const std::string& name) {
+    const MatchedPair& pair = set.pairs[i];
+    const bool image = kind == ArmKind::image_based;
+    builder.add_arm(set.renderings, image ? pair.image_based : pair.polygon_assisted, kind,
+                    image ? pair.image_label : pair.assisted_label, name);
+  };
+  if (n_rows > 0) {
+    builder.begin_row("Image-based: JPEG of H");
+    for (size_t i = 0; i < n_rows; ++i) add(i, ArmKind::image_based, "image" + std::to_string(i + 1));
+    builder.begin_row("Polygon-assisted: L plus JPEG of D, in the bytes of the picture above");
+    for (size_t i = 0; i < n_rows; ++i) add(i, ArmKind::polygon_assisted, "polygon" + std::to_string(i + 1));
+  }
+  builder.begin_row(n_rows > 0 ? "The pair of Table I" : "Both arms at matched bytes");
+  add(n_rows, ArmKind::image_based, "image");
+  add(n_rows, ArmKind::polygon_assisted, "polygon");
 }
 
-// A pair that has its own row: figures 2l and 2m.
-void add_table_pair(FigureBuilder& builder, const Still& still) {
-  builder.begin_row("The pair of Table I");
-  builder.add_arm(still.renderings, still.image_based, ArmKind::image_based, "2l", "image");
-  builder.add_arm(still.renderings, still.polygon_assisted, ArmKind::polygon_assisted, "2m", "polygon");
-}
-
-void add_figure(const FigureSet& set, const PaperResults& results, IllustratedReport& page) {
-  const FigureText* text = find_text(set.key);
-  FigureBuilder builder(set.key, text != nullptr ? text->number : set.key, text != nullptr ? text->title : set.title,
-                        page.images);
-  if (text != nullptr) builder.figure().paragraphs.emplace_back(text->paragraph);
-  builder.add_renderings(set.renderings, text != nullptr ? text->labels[0] : "", text != nullptr ? text->labels[1] : "",
-                         text != nullptr ? text->labels[2] : "");
-  add_pairs(builder, set);
-  const bool is_room = set.key == "figure2";
-  if (is_room) add_table_pair(builder, results.room);
+void add_figure(const FigureSet& set, IllustratedReport& page) {
+  const FigureText* known = find_text(set.key);
+  const FigureText text =
+      known != nullptr ? *known : FigureText{set.key, set.key.c_str(), set.title.c_str(), "", {"", "", ""}};
+  FigureBuilder builder(set.key, text.number, text.title, page.images);
+  if (*text.paragraph != 0) builder.figure().paragraphs.emplace_back(text.paragraph);
+  builder.add_renderings(set.renderings, text.labels[0], text.labels[1], text.labels[2]);
   if (!set.pairs.empty()) {
-    const Arm& image = is_room ? results.room.image_based : set.pairs[0].image_based;
-    const Arm& polygon = is_room ? results.room.polygon_assisted : set.pairs[0].polygon_assisted;
-    const bool has_names = is_room || set.pairs.size() == 1;
-    if (has_names)
-      builder.add_enlargements(set.renderings, image, polygon, is_room ? "2l" : set.pairs[0].image_label,
-                               is_room ? "2m" : set.pairs[0].assisted_label);
-    builder.set_wipe(has_names ? "image" : "image1", has_names ? "polygon" : "polygon1");
+    const MatchedPair& enlarged = set.pairs.back();
+    add_pairs(builder, set);
+    builder.add_enlargements(set.renderings, enlarged.image_based, enlarged.polygon_assisted, enlarged.image_label,
+                             enlarged.assisted_label);
+    builder.set_wipe("image", "polygon");
   }
   builder.figure().findings.push_back(figure_finding(set));
   page.report.figures.push_back(std::move(builder.figure()));
@@ -169,7 +164,7 @@ IllustratedReport demo_report(const PaperResults& results) {
       "machines. In F, the same JPEG file plus the model, compressed without loss; the paper estimates those bytes, we "
       "count "
       "them."};
-  for (const FigureSet& set : results.figures) add_figure(set, results, page);
+  for (const FigureSet& set : results.figures) add_figure(set, page);
   report.plots = demo_plots(results);
   report.plot_paragraphs = {
       "Every point is a JPEG file; both arms use optimal Huffman codes here. Lines at 25:1, above which the paper "

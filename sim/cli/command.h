@@ -18,8 +18,18 @@ constexpr int kBadData = 1;
 constexpr int kBadUsage = 2;
 
 // Each parses its arguments (those after the command's name), works, and returns the exit code.
-int run_isa(Args args);
+int run_demo(Args args);
+int run_render(Args args);
+int run_compare(Args args);
+int run_jpeg_encode(Args args);
+int run_jpeg_decode(Args args);
+int run_jpeg_info(Args args);
+int run_geom_encode(Args args);
+int run_geom_decode(Args args);
+int run_geom_info(Args args);
+int run_metrics(Args args);
 int run_scenes(Args args);
+int run_isa(Args args);
 
 // Prints "pac: FILE: what is wrong (at byte N)"; returns kBadData. The offset is left out where it has no meaning.
 int data_error(const std::string& file, const Failure& failure);

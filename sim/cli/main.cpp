@@ -16,6 +16,16 @@ struct Command {
 };
 
 constexpr Command kCommands[] = {
+    {"demo", "the paper's experiments on the built-in scenes, as a page and Table I", run_demo},
+    {"render", "draws one picture of a scene", run_render},
+    {"compare", "one still, image-based and polygon-assisted at matched bytes", run_compare},
+    {"jpeg encode", "writes a baseline JPEG file", run_jpeg_encode},
+    {"jpeg decode", "writes a JPEG file's picture as PNG, PPM or PGM", run_jpeg_decode},
+    {"jpeg info", "markers, frame, tables, estimated quality, metadata", run_jpeg_info},
+    {"geom encode", "codes a polygon mesh", run_geom_encode},
+    {"geom decode", "writes a coded mesh as PLY", run_geom_decode},
+    {"geom info", "what a coded mesh's header says", run_geom_info},
+    {"metrics", "how far a picture or sequence is from its reference", run_metrics},
     {"scenes", "the built-in scenes", run_scenes},
     {"isa", "which implementation each kernel uses, and which are built", run_isa},
 };

@@ -80,8 +80,8 @@ FigureSet figure(int side, const char* key, const char* scene, const char* split
   set.renderings = renderings(side, split);
   for (int i = 0; i < n_pairs; ++i) {
     MatchedPair& pair = set.pairs.emplace_back();
-    pair.image_label = std::string("2") + static_cast<char>('d' + i);
-    pair.assisted_label = std::string("2") + static_cast<char>('h' + i);
+    pair.image_label = std::string("2") + "defgl"[i];
+    pair.assisted_label = std::string("2") + "hijkm"[i];
     const auto bytes = static_cast<uint64_t>(15000 / (i + 1));
     pair.image_based = arm(side, ArmKind::image_based, 30.0 / (i + 1), bytes);
     pair.polygon_assisted = arm(side, ArmKind::polygon_assisted, 61.4 / (i + 1), bytes - 20);
@@ -119,7 +119,7 @@ PaperResults mock_results(int side) {
   results.pin = still(side, "tessellation");
   results.room_transmitted = still(side, "texture");
   results.pin_transmitted = still(side, "tessellation");
-  results.figures.push_back(figure(side, "figure2", "room", "texture", 4));
+  results.figures.push_back(figure(side, "figure2", "room", "texture", 5));
   results.figures.push_back(figure(side, "figure3", "pin", "tessellation", 1));
   results.figures.push_back(figure(side, "figure4", "letter", "shading", 1));
   results.figures.push_back(figure(side, "figure5", "letter-texture", "texture", 1));

@@ -1,0 +1,171 @@
+// `pac compare`: one still through both arms at matched bytes.
+#include <cstdio>
+
+#include "base/image_io.h"
+#include "base/metrics.h"
+#include "sim/cli/command.h"
+#include "sim/cli/image_files.h"
+#include "sim/cli/report_files.h"
+#include "sim/cli/scene_source.h"
+#include "sim/experiment.h"
+#include "sim/loaded_scene.h"
+#include "sim/packet.h"
+#include "sim/report_demo.h"
+
+namespace pac::cli {
+namespace {
+
+struct Request {
+  std::string scene, out;
+  int frame = 0, bytes = 0;
+  sim::StillOptions still;
+  sim::Codec codec = sim::Codec::jpeg;
+};
+
+void declare(Options& options, Request& request) {
+  using sim::TableFamily;
+  sim::RenderOptions& render = request.still.render;
+  sim::CodingOptions& coding = request.still.coding;
+  options.positional("SCENE", request.scene, kSceneHelp);
+  options.text("--split", "NAMES", render.split,
+               "texture, tessellation, shading, antialiasing, lighting, or several joined by commas (the scene's own)");
+  options.real("-q|--quality", "Q", request.still.quality, 0.01, 100,
+               "of the image-based arm; the other is matched to its bytes (15)");
+  options.integer("--bytes", "N", request.bytes, 1, 2147483647, "match both arms to this size instead");
+  options.choice<bool>("--model", render.transmit_model, {{"resident", false}, {"transmitted", true}},
+                       "transmitted: its bytes count, and L is drawn from the decoded model (resident)");
+  options.choice<TableFamily>("--tables", coding.tables,
+                              {{"annex-k", TableFamily::annex_k}, {"adapted", TableFamily::adapted}},
+                              "quantization tables of both arms (annex-k)");
+  options.choice<jpeg::Huffman>("--huffman", coding.huffman,
+                                {{"standard", jpeg::Huffman::standard}, {"optimal", jpeg::Huffman::optimal}},
+                                "codes of both arms (standard, as the paper)");
+  options.choice<sim::Codec>("--codec", request.codec, {{"jpeg", sim::Codec::jpeg}}, "of both arms (jpeg)");
+  options.integer("--width", "W", render.width, 1, 32768, "pixels (the scene's own)");
+  options.integer("--height", "H", render.height, 1, 32768, "pixels (the scene's own)");
+  options.choice<int>("--samples", render.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
+                      "a pixel, of an antialiased side (16)");
+  options.integer("--frame", "N", request.frame, 0, 1000000, "of the camera path (0)");
+  options.text("-o|--output", "DIR", request.out, "index.html and the pictures go there");
+}
+
+void json_arm(sim::JsonWriter& json, const char* name, const sim::Arm& arm, const RgbImage& high) {
+  const Metrics metrics = measure(high.view(), arm.shown.view());
+  json.begin_object(name);
+  json.field("bytes", arm.total_bytes);
+  json.field("image_bytes", arm.image_bytes);
+  json.field("model_bytes", arm.model_bytes);
+  json.field("quality", arm.coded.quality);
+  json.field("quality_division_undone", arm.coded.equivalent_quality);
+  json.field("compression_ratio", arm.compression_ratio);
+  json.field("budget_share", arm.budget_share);
+  json.field("rms", metrics.rms);
+  json.field("psnr_rgb_db", metrics.psnr_rgb_db);
+  json.field("psnr_luma_db", metrics.psnr_luma_db);
+  json.field("ssim", metrics.ssim);
+  json.field("ms_ssim", metrics.ms_ssim);
+  json.field("max_error", metrics.max_error);
+  json.end_object();
+}
+
+void json_entropies(sim::JsonWriter& json, const char* name, const sim::Entropies& entropies) {
+  json.begin_object(name);
+  json.field("luma", entropies.luma);
+  json.field("mean_rgb", entropies.mean_rgb);
+  json.field("joint_rgb", entropies.joint_rgb);
+  json.end_object();
+}
+
+int print_as_json(const std::string& scene, const sim::Still& still) {
+  const sim::Renderings& renderings = still.renderings;
+  sim::JsonWriter json;
+  json.begin_object();
+  json.field("scene", scene);
+  json.field("split", renderings.split.name);
+  json.field("codec", "jpeg");
+  json.field("width", renderings.high.width());
+  json.field("height", renderings.high.height());
+  json.field("high_polygons", renderings.high_polygons);
+  json.field("low_polygons", renderings.low_polygons);
+  json.begin_object("entropy_bits");
+  json_entropies(json, "high", renderings.high_entropy);
+  json_entropies(json, "low", renderings.low_entropy);
+  json_entropies(json, "difference", renderings.difference_entropy);
+  json.end_object();
+  json.begin_object("model");
+  json.field("transmitted", renderings.model_transmitted);
+  json.field("bytes", renderings.model_bytes);
+  json.field("estimated_bytes", renderings.estimated_model_bytes);
+  json.field("visible_polygons", renderings.visible_low_polygons);
+  json.field("resident_bytes", renderings.resident_model_bytes);
+  json.end_object();
+  json_arm(json, "image_based", still.image_based, renderings.high);
+  json_arm(json, "polygon_assisted", still.polygon_assisted, renderings.high);
+  json.end_object();
+  return print_json(json);
+}
+
+void print_text(const std::string& scene, const sim::Still& still) {
+  const sim::Renderings& renderings = still.renderings;
+  std::printf("%s, split %s, %d x %d, %s -> %s polygons\n", scene.c_str(), renderings.split.name.c_str(),
+              renderings.high.width(), renderings.high.height(), grouped(renderings.high_polygons).c_str(),
+              grouped(renderings.low_polygons).c_str());
+  std::printf("entropy of H %.2f, of D %.2f bits (mean of R, G, B)\n\n", renderings.high_entropy.mean_rgb,
+              renderings.difference_entropy.mean_rgb);
+  std::printf("%-26s %14s %18s\n", "", "image-based", "polygon-assisted");
+  const sim::Arm &image = still.image_based, &polygon = still.polygon_assisted;
+  const auto row = [](const char* label, double a, double b, int digits) {
+    std::printf("%-26s %14.*f %18.*f\n", label, digits, a, digits, b);
+  };
+  row("JPEG quality factor", image.coded.quality, polygon.coded.quality, 1);
+  row("  division by two undone", image.coded.equivalent_quality, polygon.coded.equivalent_quality, 1);
+  std::printf("%-26s %14s %18s\n", "bytes", grouped(image.total_bytes).c_str(), grouped(polygon.total_bytes).c_str());
+  if (polygon.model_bytes > 0)
+    std::printf("%-26s %14s %18s\n", "  of it the model", "", grouped(polygon.model_bytes).c_str());
+  row("compression ratio (:1)", image.compression_ratio, polygon.compression_ratio, 1);
+  row("% of 2 Mb/s at 20/s", 100 * image.budget_share, 100 * polygon.budget_share, 0);
+  row("rms", image.scores.rms, polygon.scores.rms, 2);
+  row("PSNR (dB)", image.scores.psnr_db, polygon.scores.psnr_db, 2);
+  row("SSIM", image.scores.ssim, polygon.scores.ssim, 4);
+}
+
+// The command line that makes the page again.
+std::string command_line(Args args) {
+  std::string line = "pac compare";
+  for (const char* argument : args) line += std::string(" ") + argument;
+  return line;
+}
+
+}  // namespace
+
+int run_compare(Args args) {
+  Options options("compare", "one still, image-based and polygon-assisted at matched bytes",
+                  "pac compare room --quality 15 -o room-compared");
+  Request request;
+  declare(options, request);
+  if (const auto code = options.parse(args)) return *code;
+  if (options.given("--bytes") && options.given("--quality"))
+    return options.usage_error("--bytes chooses the quality itself: leave --quality out");
+  auto source = load_scene(request.scene, options);
+  if (!source) return kBadData;
+  if (request.still.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
+    sim::add_coarse_model(source->set);
+  request.still.target_bytes = static_cast<uint64_t>(request.bytes);
+  request.still.render.threads = request.still.coding.threads = options.threads;
+  request.still.render.isa = request.still.coding.isa = options.isa;
+  const auto size = [](int given, int own) { return static_cast<float>(given > 0 ? given : own); };
+  const float aspect =
+      size(request.still.render.width, source->set.width) / size(request.still.render.height, source->set.height);
+  const auto still = sim::run_still(source->set, source->camera(request.frame, aspect), request.still);
+  if (!still.ok()) return data_error(request.scene, still.failure());
+  if (!request.out.empty()) {
+    const auto page = sim::compare_report(source->name, *still, command_line(args));
+    if (const int code = write_report(request.out, page, options); code != kDone) return code;
+  }
+  if (options.json) return print_as_json(source->name, *still);
+  print_text(source->name, *still);
+  if (!request.out.empty() && !options.quiet) std::fprintf(stderr, "\nlook at %s/index.html\n", request.out.c_str());
+  return kDone;
+}
+
+}  // namespace pac::cli

@@ -1,0 +1,30 @@
+// SCENE on the command line: the name of a built-in scene or the path of an OBJ or PLY file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/cli/command.h"
+#include "sim/scenes.h"
+
+namespace pac::cli {
+
+struct SceneSource {
+  std::string name;
+  sim::SceneSet set;
+  const sim::BuiltinScene* builtin = nullptr;  // null where it came from a file
+
+  // Built-in scenes bring their path; a model from a file is orbited.
+  raster::Camera camera(int frame, float aspect) const;
+};
+
+constexpr uint32_t kSceneSeed = 1;  // of the built-in scenes, everywhere
+
+// MTL files and textures are read beside the model; what is missing there is a warning on stderr (unless --quiet).
+// Empty after a message. Names that are neither a scene nor a file get the nearest scene suggested.
+std::optional<SceneSource> load_scene(const std::string& name, const Options& options);
+
+// The help text of the SCENE operand.
+constexpr const char* kSceneHelp = "a built-in scene ('pac scenes') or an OBJ or PLY file";
+
+}  // namespace pac::cli
