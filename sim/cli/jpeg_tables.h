@@ -1,35 +1,20 @@
-// Where `pac jpeg encode` takes its quantization tables from.
+// Quantization tables from a text file.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
+#include <cstdint>
+#include <span>
 
-#include "base/image.h"
+#include "base/result.h"
 #include "jpeg/jpeg.h"
-#include "sim/table_family.h"
 
 namespace pac::cli {
 
-// A pair of tables for each quality on the IJG scale.
-class TableSource {
- public:
-  // Annex K's, or designed for `image` [see sim/table_family.h].
-  static Result<TableSource> family(sim::TableFamily family, ConstRgbView image, jpeg::Subsampling subsampling);
+// 64 numbers of 1..255 for luma and, optionally, 64 for chroma (else the same), in row order as the IJG software reads
+// them; # starts a comment. Fails with corrupt at the offset of what is no such number, or where their count is neither
+// 64 nor 128.
+Result<jpeg::QuantTables> read_tables(std::span<const uint8_t> text);
 
-  // A text with 64 numbers of 1..255 for luma and, optionally, 64 for chroma (else the same), in row order as the IJG
-  // software reads them; # starts a comment. Quality 50 gives them as they are, others scale them as Annex K's. Fails
-  // with corrupt at the offset of what is no such number, or where their count is neither 64 nor 128.
-  static Result<TableSource> from_text(std::span<const uint8_t> text);
-
-  jpeg::QuantTables at_quality(double quality) const;  // (0, 100]
-  std::vector<double> step_qualities() const;          // finest tables first
-  const char* name() const { return name_; }
-
- private:
-  const char* name_ = "";
-  std::optional<sim::ScaledTables> scaled_;
-  jpeg::QuantTables fixed_;  // where scaled_ is empty
-};
+// The tables at a quality in (0, 100]: they count as those of quality 50 and scale as Annex K's do.
+jpeg::QuantTables scale_tables(const jpeg::QuantTables& tables, double quality);
 
 }  // namespace pac::cli
