@@ -35,8 +35,8 @@ struct ReportRow {
 
 // A part of a picture of the same figure, enlarged with sharp pixels as in figures 2l and 2m.
 struct ReportCrop {
-  std::string picture_id;
-  std::string label, title, caption;
+  std::string picture_id;                   // its label and title stand below
+  std::string caption;                      // which part, in words
   int x = 0, y = 0, width = 0, height = 0;  // pixels of the picture
 };
 
@@ -56,7 +56,7 @@ struct ReportFigure {
   std::vector<std::string> paragraphs;
   std::vector<ReportRow> rows;
   std::string wipe_left, wipe_right;  // ids that the wipe starts with; empty = no wipe
-  std::vector<ReportCrop> crops;
+  std::vector<ReportCrop> crops;      // in rows of three
   std::vector<ReportFinding> findings;
 };
 
@@ -69,6 +69,7 @@ struct Report {
   std::string title, subtitle;
   std::vector<std::string> abstract;
   std::vector<ReportHighlight> highlights;
+  std::string head_figure;               // id of the figure whose wipe also stands in the page's head, or empty
   Table1 table;                          // shown where it has columns
   std::vector<std::string> table_notes;  // what differs and why, for all rows
   std::vector<ReportFigure> figures;
@@ -82,11 +83,5 @@ struct Report {
 
 // The whole file, UTF-8.
 std::string report_html(const Report& report);
-
-// "1,234.5": `digits` after the point, thousands apart.
-std::string decimal_text(double number, int digits);
-
-// & < > " as entities: safe in text and in quoted attributes.
-std::string html_escaped(std::string_view text);
 
 }  // namespace pac::sim

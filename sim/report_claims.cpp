@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "sim/report_figure.h"
+#include "sim/report_markup.h"
 
 namespace pac::sim {
 namespace {
@@ -227,7 +228,7 @@ ReportFinding figure_finding(const FigureSet& set) {
                           : wins.ssim == wins.pairs ? Verdict::agrees
                           : wins.ssim > 0           ? Verdict::differs
                                                     : Verdict::against;
-  return {verdict, set.finding, "At matched bytes " + wins_text(wins) + "."};
+  return {verdict, set.finding, wins.pairs > 1 ? "At matched bytes " + wins_text(wins) + "." : ""};
 }
 
 std::vector<ReportHighlight> demo_highlights(const PaperResults& results) {

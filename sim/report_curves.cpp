@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/exact_math.h"
-#include "sim/report.h"
 #include "sim/report_figure.h"
+#include "sim/report_markup.h"
 
 namespace pac::sim {
 namespace {

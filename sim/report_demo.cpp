@@ -73,24 +73,32 @@ const FigureText* find_text(const std::string& key) {
   return nullptr;
 }
 
-// The last pair is the one that is enlarged; those before it form two rows.
+void add_pair_arm(FigureBuilder& builder, const FigureSet& set, size_t i, ArmKind kind, const std::string& name) {
+  const MatchedPair& pair = set.pairs[i];
+  const bool image = kind == ArmKind::image_based;
+  builder.add_arm(set.renderings, image ? pair.image_based : pair.polygon_assisted, kind,
+                  image ? pair.image_label : pair.assisted_label, name);
+}
+
+// The last pair is the one that is enlarged; those before it form two rows. A single pair stands beside H, L and D.
 void add_pairs(FigureBuilder& builder, const FigureSet& set) {
-  const size_t n_rows = set.pairs.size() - 1;
-  const auto add = [&](size_t i, ArmKind kind, const std::string& name) {
-    const MatchedPair& pair = set.pairs[i];
-    const bool image = kind == ArmKind::image_based;
-    builder.add_arm(set.renderings, image ? pair.image_based : pair.polygon_assisted, kind,
-                    image ? pair.image_label : pair.assisted_label, name);
-  };
-  if (n_rows > 0) {
+  const size_t last = set.pairs.size() - 1;
+  if (last > 0) {
     builder.begin_row("Image-based: JPEG of H");
-    for (size_t i = 0; i < n_rows; ++i) add(i, ArmKind::image_based, "image" + std::to_string(i + 1));
+    for (size_t i = 0; i < last; ++i)
+      add_pair_arm(builder, set, i, ArmKind::image_based, "image" + std::to_string(i + 1));
     builder.begin_row("Polygon-assisted: L plus JPEG of D, in the bytes of the picture above");
-    for (size_t i = 0; i < n_rows; ++i) add(i, ArmKind::polygon_assisted, "polygon" + std::to_string(i + 1));
+    for (size_t i = 0; i < last; ++i)
+      add_pair_arm(builder, set, i, ArmKind::polygon_assisted, "polygon" + std::to_string(i + 1));
+    builder.begin_row("The pair of Table I");
   }
-  builder.begin_row(n_rows > 0 ? "The pair of Table I" : "Both arms at matched bytes");
-  add(n_rows, ArmKind::image_based, "image");
-  add(n_rows, ArmKind::polygon_assisted, "polygon");
+  add_pair_arm(builder, set, last, ArmKind::image_based, "image");
+  add_pair_arm(builder, set, last, ArmKind::polygon_assisted, "polygon");
+  const MatchedPair& pair = set.pairs[last];
+  const bool in_table = set.key == "figure2" || set.key == "figure3";
+  if (in_table) builder.add_enlargement(set.renderings, pair.image_based, pair.polygon_assisted, ArmKind::image_based);
+  builder.add_enlargement(set.renderings, pair.image_based, pair.polygon_assisted, ArmKind::polygon_assisted);
+  builder.set_wipe("image", "polygon");
 }
 
 void add_figure(const FigureSet& set, IllustratedReport& page) {
@@ -100,13 +108,7 @@ void add_figure(const FigureSet& set, IllustratedReport& page) {
   FigureBuilder builder(set.key, text.number, text.title, page.images);
   if (*text.paragraph != 0) builder.figure().paragraphs.emplace_back(text.paragraph);
   builder.add_renderings(set.renderings, text.labels[0], text.labels[1], text.labels[2]);
-  if (!set.pairs.empty()) {
-    const MatchedPair& enlarged = set.pairs.back();
-    add_pairs(builder, set);
-    builder.add_enlargements(set.renderings, enlarged.image_based, enlarged.polygon_assisted, enlarged.image_label,
-                             enlarged.assisted_label);
-    builder.set_wipe("image", "polygon");
-  }
+  if (!set.pairs.empty()) add_pairs(builder, set);
   builder.figure().findings.push_back(figure_finding(set));
   page.report.figures.push_back(std::move(builder.figure()));
 }
@@ -157,6 +159,7 @@ IllustratedReport demo_report(const PaperResults& results) {
       "a JPEG "
       "codec and a geometry codec written for the purpose, and says where the results differ from his."};
   report.highlights = demo_highlights(results);
+  report.head_figure = "figure2";
   report.table = results.table1;
   report.table_notes = {
       "In D, quality 15 as in the paper. In E, the quality whose file is nearest to D’s in size, the model resident on "
@@ -187,10 +190,10 @@ IllustratedReport compare_report(const std::string& title, const Still& still, c
   report.subtitle = "Image-based against polygon-assisted JPEG, split: " + still.renderings.split.name;
   FigureBuilder builder("still", "One still", "Both arms at matched bytes", page.images);
   builder.add_renderings(still.renderings, "", "", "");
-  builder.begin_row("");
   builder.add_arm(still.renderings, still.image_based, ArmKind::image_based, "", "image");
   builder.add_arm(still.renderings, still.polygon_assisted, ArmKind::polygon_assisted, "", "polygon");
-  builder.add_enlargements(still.renderings, still.image_based, still.polygon_assisted, "", "");
+  for (const ArmKind kind : {ArmKind::image_based, ArmKind::polygon_assisted})
+    builder.add_enlargement(still.renderings, still.image_based, still.polygon_assisted, kind);
   builder.set_wipe("image", "polygon");
   report.highlights = still_highlights(still);
   report.figures.push_back(std::move(builder.figure()));

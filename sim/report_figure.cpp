@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/report_markup.h"
+
 namespace pac::sim {
 namespace {
 
@@ -149,28 +151,19 @@ void FigureBuilder::add_arm(const Renderings& renderings, const Arm& arm, ArmKin
   picture.arm = kind == ArmKind::image_based ? PictureArm::image_based : PictureArm::polygon_assisted;
 }
 
-void FigureBuilder::add_enlargements(const Renderings& renderings, const Arm& image_based, const Arm& polygon_assisted,
-                                     const std::string& image_label, const std::string& polygon_label) {
-  const auto add = [&](const char* name, const std::string& label, const char* title, const char* where, Place place) {
+void FigureBuilder::add_enlargement(const Renderings& renderings, const Arm& image_based, const Arm& polygon_assisted,
+                                    ArmKind kind) {
+  const bool image = kind == ArmKind::image_based;
+  const RgbImage& worse = image ? image_based.shown : polygon_assisted.shown;
+  const Place place = worst_place(renderings.high.view(), worse.view(), kEnlargedSide);
+  for (const char* name : {"h", "image", "polygon"}) {
     ReportCrop& crop = figure_.crops.emplace_back();
     crop.picture_id = id_of(name);
-    crop.label = label;
-    crop.title = title;
+    crop.caption = image ? "where the image-based picture is worst" : "where the polygon-assisted picture is worst";
     crop.x = place.x;
     crop.y = place.y;
     crop.width = std::min(kEnlargedSide, renderings.high.width());
     crop.height = std::min(kEnlargedSide, renderings.high.height());
-    crop.caption = where;
-  };
-  const ConstRgbView high = renderings.high.view();
-  const Place places[] = {worst_place(high, image_based.shown.view(), kEnlargedSide),
-                          worst_place(high, polygon_assisted.shown.view(), kEnlargedSide)};
-  constexpr const char* kWhere[] = {"where the image-based picture is worst",
-                                    "where the polygon-assisted picture is worst"};
-  for (const int i : {0, 1}) {
-    add("h", "", "High-quality rendering", kWhere[i], places[i]);
-    add("image", image_label, "Image-based", kWhere[i], places[i]);
-    add("polygon", polygon_label, "Polygon-assisted", kWhere[i], places[i]);
   }
 }
 

@@ -24,9 +24,9 @@ class FigureBuilder {
   void add_arm(const Renderings& renderings, const Arm& arm, ArmKind kind, const std::string& label,
                const std::string& name);
 
-  // Enlarges the two places where the arms fail most: 128 pixels wide, from H and both arms.
-  void add_enlargements(const Renderings& renderings, const Arm& image_based, const Arm& polygon_assisted,
-                        const std::string& image_label, const std::string& polygon_label);
+  // Enlarges the place where `kind` fails most, 128 pixels wide, from H and both arms. The figure's pictures "h",
+  // "image" and "polygon" are those of this pair.
+  void add_enlargement(const Renderings& renderings, const Arm& image_based, const Arm& polygon_assisted, ArmKind kind);
 
   void set_wipe(const std::string& left, const std::string& right);
   ReportFigure& figure() { return figure_; }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/exact_math.h"
-#include "sim/report.h"
+#include "sim/report_markup.h"
 
 namespace pac::sim {
 namespace {

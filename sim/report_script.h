@@ -16,6 +16,7 @@ inline constexpr char kReportScript[] = R"js(
       select: root.querySelector('select.' + name), numbers: root.querySelector('.numbers.' + name),
     });
     const sides = { left: side('left'), right: side('right') };
+    const panel = root.querySelector('.panel');  // the wipe at the head of the page has none
     const zooms = [...root.querySelectorAll('button[data-zoom]')], blink = root.querySelector('button.blink');
     const view = { cut: 50, zoom: 1, x: 0.5, y: 0.5 };  // cut in %, zoom about the point (x, y) of the picture
     let blinking = 0;
@@ -99,14 +100,14 @@ inline constexpr char kReportScript[] = R"js(
       event.preventDefault();
     });
     for (const button of zooms) button.addEventListener('click', () => setZoom(Number(button.dataset.zoom)));
-    blink.addEventListener('click', () => {
+    if (panel) blink.addEventListener('click', () => {
       if (blinking) return stopBlinking();
       blink.setAttribute('aria-pressed', true);
       view.cut = 100;
       draw();
       blinking = setInterval(() => { view.cut = view.cut > 50 ? 0 : 100; draw(); }, 700);
     });
-    for (const name of ['left', 'right']) sides[name].select.addEventListener('change', () => show(name));
+    if (panel) for (const name of ['left', 'right']) sides[name].select.addEventListener('change', () => show(name));
     root.choose = (name, id) => {
       sides[name].select.value = id;
       show(name);

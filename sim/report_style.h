@@ -44,6 +44,9 @@ pre { background: var(--faint); padding: .9rem 1.1rem; border-radius: 6px; overf
 .kicker { font: 600 .82rem/1.4 var(--sans); letter-spacing: .09em; text-transform: uppercase; color: var(--soft); margin: 0 0 1rem; }
 h1 { font-size: clamp(2.1rem, 5.2vw, 3.5rem); letter-spacing: -.012em; margin: 0 0 1.1rem; max-width: 20em; }
 .lede { font-size: 1.22rem; line-height: 1.55; max-width: 46rem; }
+.masthead .wrap { display: grid; gap: 0 3rem; grid-template-columns: minmax(0, 1fr); }
+@media (min-width: 64rem) { .masthead .wrap:has(.compact) { grid-template-columns: minmax(0, 1fr) minmax(0, 26rem); } .highlights { grid-column: 1 / -1; } }
+.masthead .words { align-self: center; }
 .highlights { display: grid; grid-template-columns: repeat(auto-fit, minmax(12.5rem, 1fr)); gap: 1.6rem 2rem; margin: 2.4rem 0 0; }
 .highlights div { border-top: 3px solid var(--polygon); padding-top: .7rem; }
 .highlights dt { font-size: 2.2rem; line-height: 1.1; font-variant-numeric: lining-nums; margin-bottom: .3rem; }
@@ -60,7 +63,7 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 .table-one { width: 100%; min-width: 46rem; }
 .table-one th, .table-one td { padding: .38rem .8rem; text-align: right; vertical-align: top; }
 .table-one thead th { font-weight: 600; border-bottom: 1px solid var(--ink); }
-.table-one thead tr:first-child th { border: 0; padding-bottom: 0; font: 600 1.02rem/1.4 var(--serif); }
+.table-one thead tr:first-child th { border: 0; text-align: center; padding-bottom: 0; font: 600 1.02rem/1.4 var(--serif); }
 .table-one th[scope=row], .table-one td.note, .table-one .letter { text-align: left; font-weight: 400; }
 .table-one th[scope=row] { padding-left: 1.6rem; min-width: 15rem; }
 .table-one tr.part th { text-align: left; font: 600 1rem/1.4 var(--serif); padding: 1.1rem .8rem .25rem 0; border-top: 1px solid var(--rule); }
@@ -107,6 +110,8 @@ button[aria-pressed=true] { background: var(--ink); color: var(--paper); border-
 .wipe { display: none; grid-template-columns: minmax(0, calc(var(--w) * 1px)) minmax(15rem, 1fr); gap: 1.2rem 2rem; margin: 2rem 0 2.6rem; }
 .script .wipe { display: grid; }
 @media (max-width: 56rem) { .wipe { grid-template-columns: minmax(0, calc(var(--w) * 1px)); } }
+.script .wipe.compact { display: block; margin: 0; max-width: calc(var(--w) * 1px); }
+@media (max-width: 63.99rem) { .script .wipe.compact { margin-top: 1.5rem; } }
 .stage { position: relative; aspect-ratio: var(--w) / var(--h); overflow: hidden; touch-action: pan-y; user-select: none;
   cursor: ew-resize; --cut: 50%; align-self: start; }
 .stage.zoomed { cursor: grab; touch-action: none; } .stage.panning { cursor: grabbing; }

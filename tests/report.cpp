@@ -13,6 +13,7 @@
 #include "sim/report_claims.h"
 #include "sim/report_demo.h"
 #include "sim/report_figure.h"
+#include "sim/report_markup.h"
 #include "tests/support/mock_results.h"
 
 using namespace pac;

@@ -5,6 +5,7 @@
 #include "sim/cli/report_files.h"
 #include "sim/paper_figures.h"
 #include "sim/report_demo.h"
+#include "sim/report_markup.h"
 
 namespace pac::cli {
 namespace {
@@ -22,15 +23,15 @@ void print_claims(const sim::Table1& table) {
 }
 
 void print_table(const sim::Table1& table) {
-  std::printf("Table I%44s", "");
+  std::printf("Table I%54s", "");
   for (const sim::Table1Column& column : table.columns) std::printf("%12s %12s", column.scene.c_str(), "");
-  std::printf("\n%51s", "");
+  std::printf("\n%61s", "");
   for (size_t i = 0; i < table.columns.size(); ++i) std::printf("%12s %12s", "paper", "ours");
   std::printf("\n");
   for (size_t i = 0; i < table.columns[0].rows.size(); ++i) {
     const sim::Table1Row& row = table.columns[0].rows[i];
-    const std::string unit = std::string(row.unit) == ":1" || *row.unit == 0 ? "" : std::string(" (") + row.unit + ")";
-    std::printf("%c  %-48.48s", row.section, (row.label + unit).c_str());
+    const std::string unit = std::string(row.unit) == ":1" || *row.unit == 0 ? "" : std::string(", ") + row.unit;
+    std::printf("%c  %-58.58s", row.section, (row.label + unit).c_str());
     for (const sim::Table1Column& column : table.columns) {
       const sim::Table1Row& entry = column.rows[i];
       std::printf("%12s %12s", entry.paper ? cell(entry, *entry.paper).c_str() : "-", cell(entry, entry.ours).c_str());
