@@ -60,7 +60,7 @@ Text masthead(const Report& report) {
         html_tag("div", "", html_tag("dt", "", html_escaped(one.value)) + html_tag("dd", "", html_escaped(one.text)));
   html = html_tag("div", "class=\"words\"", "\n" + html);
   for (const ReportFigure& figure : report.figures)
-    if (figure.id == report.head_figure) html += "\n" + head_wipe(figure);
+    if (figure.id == report.head_figure) html += std::string("\n") + head_wipe(figure);
   if (!numbers.empty()) html += html_tag("dl", "class=\"highlights\"", numbers);
   return "<header class=\"masthead\"><div class=\"wrap\">\n" + html + "</div></header>\n";
 }
@@ -126,7 +126,7 @@ Text table_row(const Table1& table, size_t index) {
   const Text unit = first.unit;
   Text cells = html_escaped(first.label);
   const bool says_unit = Text(first.label).find(unit) != Text::npos;
-  if (unit != ":1" && !says_unit) cells += " " + html_tag("span", "class=\"unit\"", html_escaped(unit));
+  if (unit != ":1" && !says_unit) cells += std::string(" ") + html_tag("span", "class=\"unit\"", html_escaped(unit));
   cells = html_tag("th", "scope=\"row\"", cells);
   for (const Table1Column& column : table.columns) {
     const Table1Row& row = column.rows[index];
@@ -144,13 +144,14 @@ Text table_section(const Report& report) {
     const char part = table.columns[0].rows[i].section;
     if (i == 0 || part != table.columns[0].rows[i - 1].section) {
       if (i > 0) body += "</tbody>";
-      const Text span = "colspan=\"" + std::to_string(n_columns) + "\" scope=\"rowgroup\"";
-      body += "<tbody>" + html_tag("tr", "class=\"part\"", html_tag("th", span, html_escaped(part_title(part)))) + "\n";
+      const Text span = std::string("colspan=\"") + std::to_string(n_columns) + "\" scope=\"rowgroup\"";
+      body += std::string("<tbody>") +
+              html_tag("tr", "class=\"part\"", html_tag("th", span, html_escaped(part_title(part)))) + "\n";
     }
     body += table_row(table, i);
   }
   body += "</tbody>";
-  const Text grid = html_tag("table", "class=\"table-one\"", "\n" + table_head(table) + body);
+  const Text grid = html_tag("table", "class=\"table-one\"", std::string("\n") + table_head(table) + body);
   const Text region = "class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table I\"";
   std::vector<ReportFinding> claims;
   for (const Table1Column& column : table.columns)
@@ -196,8 +197,8 @@ Text methods_section(const Report& report) {
 Text idea_section() {
   return section(
       "idea", "Figure 1", "Polygons for edges and shading, JPEG for the rest",
-      "<div class=\"diagram scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Figure 1\">" + Text(kFlowDiagram) +
-          "</div>\n" +
+      std::string("<div class=\"diagram scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Figure 1\">") +
+          Text(kFlowDiagram) + "</div>\n" +
           paragraphs({"The server renders each frame twice, subtracts the low-quality rendering L from the "
                       "high-quality rendering H, and sends the difference image D = 127 + (H − L)/2 as a JPEG "
                       "file. The client renders the same L and adds: L + 2 (D − 127). Edges and smooth shading, "
@@ -213,7 +214,7 @@ std::string report_html(const Report& report) {
       "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n";
   html += html_tag("title", "", html_escaped(report.title)) + "\n" + html_tag("style", "", kReportStyle) +
           "\n</head>\n<body>\n";
-  html += "<a class=\"skip\" href=\"#main\">To the content</a>\n" + masthead(report) + contents(report);
+  html += std::string("<a class=\"skip\" href=\"#main\">To the content</a>\n") + masthead(report) + contents(report);
   html += "<main id=\"main\">\n";
   if (!report.table.columns.empty()) html += idea_section() + table_section(report);
   for (const ReportFigure& figure : report.figures) html += figure_section(figure);
@@ -221,7 +222,7 @@ std::string report_html(const Report& report) {
   if (!report.findings.empty())
     html += section("claims", "", "The paper’s claims, one by one", findings_list(report.findings));
   if (!report.methods.empty()) html += methods_section(report);
-  html += "</main>\n<footer><div class=\"wrap\">" + html_escaped(report.footer) + "</div></footer>\n";
+  html += std::string("</main>\n<footer><div class=\"wrap\">") + html_escaped(report.footer) + "</div></footer>\n";
   html += html_tag("script", "", kReportScript) + "\n</body>\n</html>\n";
   return html;
 }

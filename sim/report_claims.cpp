@@ -36,9 +36,9 @@ struct Wins {
 };
 
 std::string wins_text(const Wins& wins) {
-  const std::string of = " of " + std::to_string(wins.pairs) + (wins.pairs == 1 ? " pair" : " pairs");
-  return "polygon-assisted has the higher SSIM in " + std::to_string(wins.ssim) + of + " and the lower rms in " +
-         std::to_string(wins.rms);
+  const std::string of = std::string(" of ") + std::to_string(wins.pairs) + (wins.pairs == 1 ? " pair" : " pairs");
+  return std::string("polygon-assisted has the higher SSIM in ") + std::to_string(wins.ssim) + of +
+         " and the lower rms in " + std::to_string(wins.rms);
 }
 
 ReportFinding entropy_claim(const PaperResults& results) {
@@ -63,8 +63,9 @@ ReportFinding superiority_claim(const PaperResults& results) {
   const Verdict verdict = wins.ssim == wins.pairs      ? Verdict::agrees
                           : 2 * wins.ssim > wins.pairs ? Verdict::differs
                                                        : Verdict::against;
-  return {verdict, "In every case, polygon-assisted compression is superior at the same code size (section 4.1).",
-          "In figures 2 to 5, " + wins_text(wins) + ". The paper judged by eye; so can you, with the wipes."};
+  return {
+      verdict, "In every case, polygon-assisted compression is superior at the same code size (section 4.1).",
+      std::string("In figures 2 to 5, ") + wins_text(wins) + ". The paper judged by eye; so can you, with the wipes."};
 }
 
 std::string rms_pair(const Still& still) {
@@ -80,7 +81,7 @@ ReportFinding rms_claim(const PaperResults& results) {
       "By rms the room is worse with polygon assistance (7.5 against 6.1) although it looks better, and the pin is "
       "better "
       "(2.9 against 4.1): rms is a poor judge (section 3, Table I).";
-  finding.ours = "Room: " + rms_pair(results.room) + ". Pin: " + rms_pair(results.pin) + ".";
+  finding.ours = std::string("Room: ") + rms_pair(results.room) + ". Pin: " + rms_pair(results.pin) + ".";
   if (!room_worse) finding.ours += " On our room rms and the eye agree: the paper’s contradiction does not appear.";
   finding.verdict = !pin_better ? Verdict::against : room_worse ? Verdict::agrees : Verdict::differs;
   return finding;
@@ -88,8 +89,9 @@ ReportFinding rms_claim(const PaperResults& results) {
 
 std::string quality_pair(const Still& still) {
   const CodedImage& coded = still.polygon_assisted.coded;
-  return "q " + short_quality(still.image_based.coded.quality) + " against " + short_quality(coded.quality) + " (" +
-         short_quality(coded.equivalent_quality) + " with the division by two undone)";
+  return std::string("q ") + short_quality(still.image_based.coded.quality) + " against " +
+         short_quality(coded.quality) + " (" + short_quality(coded.equivalent_quality) +
+         " with the division by two undone)";
 }
 
 ReportFinding quality_claim(const PaperResults& results) {
@@ -99,7 +101,7 @@ ReportFinding quality_claim(const PaperResults& results) {
   return {beyond(results.room) && beyond(results.pin) ? Verdict::agrees : Verdict::against,
           "D holds less than H, so the same bytes buy a higher quality factor, even higher than the division by two "
           "requires: 15 against 41 and 55 (section 4.1).",
-          "Room: " + quality_pair(results.room) + ". Pin: " + quality_pair(results.pin) + "."};
+          std::string("Room: ") + quality_pair(results.room) + ". Pin: " + quality_pair(results.pin) + "."};
 }
 
 ReportFinding equal_quality_claim(const FigureSet& room) {
@@ -111,8 +113,8 @@ ReportFinding equal_quality_claim(const FigureSet& room) {
     return gain ? std::string("at equal ") + score + " " + decimal_text(*gain, 2) + " times"
                 : std::string("no equal ") + score + " on the curves";
   };
-  finding.ours = "At the SSIM and the rms of the image-based arm at q 15: " + sentence("SSIM", room.equal_ssim_gain) +
-                 ", " + sentence("rms", room.equal_rms_gain) + ".";
+  finding.ours = std::string("At the SSIM and the rms of the image-based arm at q 15: ") +
+                 sentence("SSIM", room.equal_ssim_gain) + ", " + sentence("rms", room.equal_rms_gain) + ".";
   const double gain = room.equal_ssim_gain.value_or(0);
   finding.verdict = gain > 2 ? Verdict::agrees : gain > 1 ? Verdict::differs : Verdict::against;
   return finding;
@@ -172,9 +174,9 @@ ReportFinding budget_claim(const PaperResults& results) {
       fits ? Verdict::agrees : Verdict::against,
       "The files of rows D and E fit 2 Mb/s at 20 frames a second, 12,500 bytes each (Table I). Row F does not, with "
       "13,529 and 16,465 bytes; the paper does not say so.",
-      "Share of that budget — D: room " + share(results.room.image_based) + ", pin " + share(results.pin.image_based) +
-          "; E: " + share(results.room.polygon_assisted) + ", " + share(results.pin.polygon_assisted) +
-          "; F: " + share(results.room_transmitted.polygon_assisted) + ", " +
+      std::string("Share of that budget — D: room ") + share(results.room.image_based) + ", pin " +
+          share(results.pin.image_based) + "; E: " + share(results.room.polygon_assisted) + ", " +
+          share(results.pin.polygon_assisted) + "; F: " + share(results.room_transmitted.polygon_assisted) + ", " +
           share(results.pin_transmitted.polygon_assisted) + "."};
 }
 
@@ -189,14 +191,14 @@ ReportFinding letter_claim(const FigureSet& shading, const FigureSet& texture) {
   return {less ? Verdict::agrees : Verdict::against,
           "The letter of figure 4 gains less than the other scenes, because its jagged edges end up in D; leaving out "
           "only texture, as in figure 5, is more successful (section 4.3).",
-          "SSIM gained at matched bytes: " + decimal_text(ssim_gain(shading), 4) + " in figure 4, " +
+          std::string("SSIM gained at matched bytes: ") + decimal_text(ssim_gain(shading), 4) + " in figure 4, " +
               decimal_text(ssim_gain(texture), 4) + " in figure 5."};
 }
 
 ReportFinding single_pass_claim(const FigureSet& room) {
   const Timings& timings = room.timings;
   return {Verdict::agrees, "H, L and D can be computed in a single pass through the data (footnote to section 4.1).",
-          "Here they are: " + decimal_text(timings.render_pair, 0) + " ms for all three, against " +
+          std::string("Here they are: ") + decimal_text(timings.render_pair, 0) + " ms for all three, against " +
               decimal_text(timings.render_high, 0) + " ms for H alone and " +
               decimal_text(timings.render_high + timings.render_low, 0) + " ms for H and L one after the other."};
 }
@@ -228,7 +230,7 @@ ReportFinding figure_finding(const FigureSet& set) {
                           : wins.ssim == wins.pairs ? Verdict::agrees
                           : wins.ssim > 0           ? Verdict::differs
                                                     : Verdict::against;
-  return {verdict, set.finding, wins.pairs > 1 ? "At matched bytes " + wins_text(wins) + "." : ""};
+  return {verdict, set.finding, wins.pairs > 1 ? std::string("At matched bytes ") + wins_text(wins) + "." : ""};
 }
 
 std::vector<ReportHighlight> demo_highlights(const PaperResults& results) {
@@ -237,10 +239,10 @@ std::vector<ReportHighlight> demo_highlights(const PaperResults& results) {
       {short_quality(image.coded.quality) + " → " + short_quality(polygon.coded.quality),
        "JPEG quality that the same bytes buy in the room, image-based and polygon-assisted. The paper: 15 → 41."},
       {decimal_text(image.scores.ssim, 3) + " → " + decimal_text(polygon.scores.ssim, 3),
-       "SSIM of the room at " + decimal_text(image.compression_ratio, 0) + ":1."},
+       std::string("SSIM of the room at ") + decimal_text(image.compression_ratio, 0) + ":1."},
       {decimal_text(results.pin.image_based.scores.rms, 1) + " → " +
            decimal_text(results.pin.polygon_assisted.scores.rms, 1),
-       "rms error of the pin at " + decimal_text(results.pin.image_based.compression_ratio, 0) +
+       std::string("rms error of the pin at ") + decimal_text(results.pin.image_based.compression_ratio, 0) +
            ":1. The paper: 4.1 → 2.9."}};
   const FigureSet* room = find_figure(results, "figure2");
   if (room != nullptr && room->equal_ssim_gain)

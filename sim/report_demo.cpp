@@ -86,10 +86,10 @@ void add_pairs(FigureBuilder& builder, const FigureSet& set) {
   if (last > 0) {
     builder.begin_row("Image-based: JPEG of H");
     for (size_t i = 0; i < last; ++i)
-      add_pair_arm(builder, set, i, ArmKind::image_based, "image" + std::to_string(i + 1));
+      add_pair_arm(builder, set, i, ArmKind::image_based, std::string("image") + std::to_string(i + 1));
     builder.begin_row("Polygon-assisted: L plus JPEG of D, in the bytes of the picture above");
     for (size_t i = 0; i < last; ++i)
-      add_pair_arm(builder, set, i, ArmKind::polygon_assisted, "polygon" + std::to_string(i + 1));
+      add_pair_arm(builder, set, i, ArmKind::polygon_assisted, std::string("polygon") + std::to_string(i + 1));
     builder.begin_row("The pair of Table I");
   }
   add_pair_arm(builder, set, last, ArmKind::image_based, "image");

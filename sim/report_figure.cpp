@@ -56,9 +56,9 @@ std::string short_quality(double quality) {
 }
 
 std::string quality_text(const Arm& arm, ArmKind kind) {
-  std::string text = "q " + short_quality(arm.coded.quality);
+  std::string text = std::string("q ") + short_quality(arm.coded.quality);
   if (kind == ArmKind::polygon_assisted)
-    text += " (" + short_quality(arm.coded.equivalent_quality) + " with the division by two undone)";
+    text += std::string(" (") + short_quality(arm.coded.equivalent_quality) + " with the division by two undone)";
   return text;
 }
 
@@ -68,8 +68,8 @@ std::string size_text(const Arm& arm) {
 }
 
 std::string scores_text(const Scores& scores) {
-  return "rms " + decimal_text(scores.rms, 2) + ", PSNR " + decimal_text(scores.psnr_db, 2) + " dB, SSIM " +
-         decimal_text(scores.ssim, 4);
+  return std::string("rms ") + decimal_text(scores.rms, 2) + ", PSNR " + decimal_text(scores.psnr_db, 2) +
+         " dB, SSIM " + decimal_text(scores.ssim, 4);
 }
 
 Place worst_place(ConstRgbView reference, ConstRgbView test, int size) {
@@ -113,7 +113,7 @@ void FigureBuilder::begin_row(const std::string& label) {
 void FigureBuilder::add_renderings(const Renderings& renderings, const std::string& high_label,
                                    const std::string& low_label, const std::string& difference_label) {
   const auto entropy = [](const Entropies& entropies) {
-    return "entropy " + decimal_text(entropies.mean_rgb, 2) + " bits a sample (luma " +
+    return std::string("entropy ") + decimal_text(entropies.mean_rgb, 2) + " bits a sample (luma " +
            decimal_text(entropies.luma, 2) + ", joint RGB " + decimal_text(entropies.joint_rgb, 2) + ")";
   };
   const auto polygons = [](uint64_t count) { return decimal_text(static_cast<double>(count), 0) + " polygons"; };
@@ -130,7 +130,7 @@ void FigureBuilder::add_renderings(const Renderings& renderings, const std::stri
       renderings.high_entropy, "The high-quality rendering");
   add("l", renderings.low, low_label, "Low-quality rendering L", polygons(renderings.low_polygons),
       renderings.low_entropy, "The low-quality rendering");
-  const std::string lower = "entropy " + decimal_text(renderings.high_entropy.mean_rgb, 2) + " → " +
+  const std::string lower = std::string("entropy ") + decimal_text(renderings.high_entropy.mean_rgb, 2) + " → " +
                             decimal_text(renderings.difference_entropy.mean_rgb, 2) + " bits";
   add("d", renderings.difference, difference_label, "Difference image D", lower, renderings.difference_entropy,
       "The difference image: gray where both renderings agree");
@@ -146,7 +146,8 @@ void FigureBuilder::add_arm(const Renderings& renderings, const Arm& arm, ArmKin
                     decimal_text(static_cast<double>(arm.total_bytes) * 8 * 20 / 1e6, 2) +
                     " Mb/s at 20 frames a second (" + decimal_text(100 * arm.budget_share, 0) + " % of 2 Mb/s)";
   if (arm.model_bytes > 0)
-    picture.details += "\nof it the model: " + decimal_text(static_cast<double>(arm.model_bytes), 0) + " bytes";
+    picture.details +=
+        std::string("\nof it the model: ") + decimal_text(static_cast<double>(arm.model_bytes), 0) + " bytes";
   picture.alt = arm_alt(renderings, arm, kind);
   picture.arm = kind == ArmKind::image_based ? PictureArm::image_based : PictureArm::polygon_assisted;
 }

@@ -18,27 +18,29 @@ const char* arm_class(const ReportPicture& picture) {
 Text caption(const Text& label, const Text& title, const Text& numbers) {
   Text html = label.empty() ? "" : html_tag("span", "class=\"letter-tag\"", html_escaped(label));
   html += html_tag("b", "", html_escaped(title));
-  if (!numbers.empty()) html += " " + html_tag("span", "class=\"numbers\"", html_escaped(numbers));
+  if (!numbers.empty()) html += std::string(" ") + html_tag("span", "class=\"numbers\"", html_escaped(numbers));
   return html;
 }
 
 Text wipe_button(const ReportFigure& figure, const ReportPicture& picture, const char* side) {
   return html_tag("button",
-                  "type=\"button\" " + html_attribute("data-wipe", figure.id + "-wipe") +
+                  std::string("type=\"button\" ") + html_attribute("data-wipe", figure.id + "-wipe") +
                       html_attribute("data-side", side) + html_attribute("data-id", picture.id) +
                       html_attribute("aria-label", "Show " + picture.title + " on the " + side + " of the wipe"),
                   Text(side));
 }
 
 Text picture_html(const ReportFigure& figure, const ReportPicture& picture) {
-  const Text size = "width=\"" + std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) + "\"";
-  const Text image = "<img " + html_attribute("src", picture.file) + html_attribute("alt", picture.alt) + size + ">";
+  const Text size =
+      std::string("width=\"") + std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) + "\"";
+  const Text image =
+      std::string("<img ") + html_attribute("src", picture.file) + html_attribute("alt", picture.alt) + size + ">";
   Text content = html_tag("a", html_attribute("href", picture.file), image) +
                  html_tag("figcaption", "", caption(picture.label, picture.title, picture.caption));
   if (!figure.wipe_left.empty())
     content += html_tag("div", "class=\"to-wipe\"",
                         wipe_button(figure, picture, "left") + wipe_button(figure, picture, "right"));
-  return html_tag("figure", "class=\"picture " + Text(arm_class(picture)) + "\"", content) + "\n";
+  return html_tag("figure", std::string("class=\"picture ") + Text(arm_class(picture)) + "\"", content) + "\n";
 }
 
 Text row_html(const ReportFigure& figure, const ReportRow& row) {
@@ -48,7 +50,7 @@ Text row_html(const ReportFigure& figure, const ReportRow& row) {
     pictures += picture_html(figure, picture);
     widest = std::max(widest, picture.width);
   }
-  const Text style = "class=\"grid\" style=\"--columns:" + std::to_string(row.pictures.size()) +
+  const Text style = std::string("class=\"grid\" style=\"--columns:") + std::to_string(row.pictures.size()) +
                      ";--widest:" + std::to_string(widest) + "px\"";
   const Text label = row.label.empty() ? "" : html_tag("p", "class=\"label\"", html_escaped(row.label));
   return html_tag("div", "class=\"row\"", label + html_tag("div", style, "\n" + pictures)) + "\n";
@@ -94,16 +96,16 @@ Text wipe_side(const ReportFigure& figure, const char* side, const ReportPicture
 }
 
 Text wipe_layer(const char* side, const ReportPicture& picture) {
-  return html_tag(
-      "div", Text("class=\"layer ") + side + "\"",
-      "<img " + html_attribute("src", picture.file) + html_attribute("alt", picture.alt) + "draggable=\"false\">");
+  return html_tag("div", Text("class=\"layer ") + side + "\"",
+                  std::string("<img ") + html_attribute("src", picture.file) + html_attribute("alt", picture.alt) +
+                      "draggable=\"false\">");
 }
 
 Text wipe_tools() {
   Text html = html_tag("span", "", "Enlarge");
   for (const int zoom : {1, 2, 4, 8})
-    html +=
-        html_tag("button", "type=\"button\" data-zoom=\"" + std::to_string(zoom) + "\"", std::to_string(zoom) + "×");
+    html += html_tag("button", std::string("type=\"button\" data-zoom=\"") + std::to_string(zoom) + "\"",
+                     std::to_string(zoom) + "×");
   html += html_tag("button", "type=\"button\" class=\"blink\" aria-pressed=\"false\"", "Blink");
   return html_tag("div", "class=\"tools\"", html);
 }
@@ -140,8 +142,9 @@ Text wipe_html(const ReportFigure& figure) {
       "<kbd>−</kbd> to enlarge. Enlarged, drag the picture itself, or hold <kbd>Alt</kbd> with the arrow keys.";
   const Text panel = wipe_side(figure, "left", *left) + wipe_side(figure, "right", *right) + wipe_tools() +
                      html_tag("p", "class=\"hint\"", kHint);
-  return html_tag("div", wipe_attributes(figure.id + "-wipe", "wipe", *left),
-                  "\n" + wipe_stage(figure.number, *left, *right) + html_tag("div", "class=\"panel\"", panel)) +
+  return html_tag(
+             "div", wipe_attributes(figure.id + "-wipe", "wipe", *left),
+             std::string("\n") + wipe_stage(figure.number, *left, *right) + html_tag("div", "class=\"panel\"", panel)) +
          "\n";
 }
 
@@ -152,15 +155,15 @@ Text percent(double part, double whole) {
 Text crop_html(const ReportFigure& figure, const ReportCrop& crop) {
   const ReportPicture* picture = find_picture(figure, crop.picture_id);
   if (picture == nullptr || crop.width <= 0 || crop.height <= 0) return "";
-  const Text place = "width:" + percent(picture->width, crop.width) + ";left:" + percent(-crop.x, crop.width) +
-                     ";top:" + percent(-crop.y, crop.height);
-  const Text image = "<img " + html_attribute("src", picture->file) +
+  const Text place = std::string("width:") + percent(picture->width, crop.width) +
+                     ";left:" + percent(-crop.x, crop.width) + ";top:" + percent(-crop.y, crop.height);
+  const Text image = std::string("<img ") + html_attribute("src", picture->file) +
                      html_attribute("alt", "Enlarged part of: " + picture->alt) + "style=\"" + place + "\">";
-  const Text frame = html_tag(
-      "div",
-      "class=\"crop\" style=\"aspect-ratio:" + std::to_string(crop.width) + "/" + std::to_string(crop.height) + "\"",
-      image);
-  return html_tag("figure", "class=\"" + Text(arm_class(*picture)) + "\"",
+  const Text frame = html_tag("div",
+                              std::string("class=\"crop\" style=\"aspect-ratio:") + std::to_string(crop.width) + "/" +
+                                  std::to_string(crop.height) + "\"",
+                              image);
+  return html_tag("figure", std::string("class=\"") + Text(arm_class(*picture)) + "\"",
                   frame + html_tag("figcaption", "", caption(picture->label, picture->title, crop.caption))) +
          "\n";
 }
@@ -189,7 +192,7 @@ std::string head_wipe(const ReportFigure& figure) {
   const ReportPicture* right = find_picture(figure, figure.wipe_right);
   if (left == nullptr || right == nullptr) return "";
   return html_tag("div", wipe_attributes("head-wipe", "wipe compact", *left),
-                  "\n" + wipe_stage(figure.number + ", at the head of the page", *left, *right)) +
+                  std::string("\n") + wipe_stage(figure.number + ", at the head of the page", *left, *right)) +
          "\n";
 }
 

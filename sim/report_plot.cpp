@@ -199,7 +199,8 @@ std::string draw_series(const Plot& plot, const Axis& x, const Axis& y) {
       const double px = x.place(point.x), py = y.place(point.y);
       path += path.empty() ? "M" : "L";
       path += text_of(px, 1) + " " + text_of(py, 1);
-      markers += "<g class=\"point\">" + marker(px, py, i) + "<title>" + html_escaped(point.label) + "</title></g>";
+      markers += std::string("<g class=\"point\">") + marker(px, py, i) + "<title>" + html_escaped(point.label) +
+                 "</title></g>";
     }
     if (path.empty()) continue;
     svg += "<g class=\"series " + series.style + "\"><path d=\"" + path + "\"/>" + markers + "</g>";

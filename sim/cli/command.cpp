@@ -16,7 +16,7 @@ int data_error(const std::string& file, const Failure& failure) {
   std::string problem = failure.text;
   const bool has_place = failure.error == Error::truncated || failure.error == Error::corrupt ||
                          failure.error == Error::unsupported || failure.error == Error::limit_exceeded;
-  if (has_place) problem += " (at byte " + std::to_string(failure.byte_offset) + ")";
+  if (has_place) problem += std::string(" (at byte ") + std::to_string(failure.byte_offset) + ")";
   return data_error(file == "-" ? "standard input" : file, problem);
 }
 

@@ -108,7 +108,7 @@ int print_summary(const Options& options, const Request& request, const CodedFil
 
 int encode_error(const Request& request, const Failure& failure) {
   if (failure.error == Error::out_of_space)
-    return data_error(request.in, "does not fit " + std::to_string(request.target_bytes) +
+    return data_error(request.in, std::string("does not fit ") + std::to_string(request.target_bytes) +
                                       " bytes: the coarsest tables take " + std::to_string(failure.byte_offset));
   return data_error(request.in, failure);
 }

@@ -56,8 +56,8 @@ int compare_pictures(const Options& options, const NamedBytes& reference, const 
   const auto second = decode_picture(test.bytes, options.isa);
   if (!second.ok()) return data_error(test.path, second.failure());
   if (first->empty() || first->width() != second->width() || first->height() != second->height())
-    return data_error(test.path,
-                      "is " + size_text(*second) + " pixels, but " + reference.path + " is " + size_text(*first));
+    return data_error(test.path, std::string("is ") + size_text(*second) + " pixels, but " + reference.path + " is " +
+                                     size_text(*first));
   if (!map_path.empty()) {
     const RgbImage map = error_map(first->view(), second->view(), gain);
     if (const int code = write_picture(map_path, map.view()); code != kDone) return code;

@@ -32,7 +32,7 @@ void print_warnings(const std::string& path, const std::vector<raster::Warning>&
     warn(path, text + " (at byte " + std::to_string(warnings[i].byte_offset) + ")");
   }
   if (warnings.size() > kMostWarnings)
-    warn(path, "and " + std::to_string(warnings.size() - kMostWarnings) + " more warnings");
+    warn(path, std::string("and ") + std::to_string(warnings.size() - kMostWarnings) + " more warnings");
 }
 
 std::string nearest_scene(const std::string& name) {
