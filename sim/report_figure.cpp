@@ -140,7 +140,7 @@ void FigureBuilder::add_arm(const Renderings& renderings, const Arm& arm, ArmKin
                             const std::string& name) {
   ReportPicture& picture = add_picture(name, arm.shown.view());
   picture.label = label;
-  picture.title = arm_name(kind) + ", q " + short_quality(arm.coded.quality);
+  picture.title = arm_name(kind) + ", q\u00a0" + short_quality(arm.coded.quality);
   picture.caption = size_text(arm);
   picture.details = quality_text(arm, kind) + "\n" + scores_text(arm.scores) + "\n" +
                     decimal_text(static_cast<double>(arm.total_bytes) * 8 * 20 / 1e6, 2) +

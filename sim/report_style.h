@@ -125,7 +125,7 @@ button[aria-pressed=true] { background: var(--ink); color: var(--paper); border-
   background: #fff; color: #222; box-shadow: 0 0 0 1px rgba(0,0,0,.45), 0 2px 8px rgba(0,0,0,.3); font: 14px/37px var(--sans); text-align: center; }
 .handle:focus-visible { outline: none; } .handle:focus-visible::after { box-shadow: 0 0 0 3px var(--polygon), 0 0 0 5px #fff; }
 .tag { position: absolute; bottom: .5rem; padding: .1rem .5rem; font: 600 .76rem/1.5 var(--sans); background: rgba(0,0,0,.62); color: #fff;
-  border-radius: 3px; pointer-events: none; max-width: 46%; }
+  border-radius: 3px; pointer-events: none; max-width: 48%; }
 .tag.left { left: .5rem; } .tag.right { right: .5rem; }
 .panel { font: .9rem/1.5 var(--sans); font-variant-numeric: lining-nums tabular-nums; align-self: start; }
 .panel .side { margin: 0 0 1.1rem; } .panel label { display: block; color: var(--soft); font-size: .82rem; margin-bottom: .25rem; }
