@@ -57,29 +57,31 @@ SceneSet build_cubes(uint32_t seed) {
     material.shininess = 24;
     material.two_sided = false;
   }
-  add_cube(builder, {0, 0, 0}, CubeFrame(0.3, 0.35, 1.15f), materials[0]);
+  add_cube(builder, {0, 0, 0}, CubeFrame(0.3, 0.35, 1.2f), materials[0]);
   constexpr int kSatellites = 6;
   for (int k = 0; k < kSatellites; ++k) {
     const double angle = 2.0 * kPi * k / kSatellites + 0.35;
-    const glm::vec3 center(2.75f * static_cast<float>(exact_sin(angle)), (k & 1) != 0 ? 0.95f : -0.95f,
-                           2.75f * static_cast<float>(exact_cos(angle)));
-    add_cube(builder, center, CubeFrame(0.7 * k + 0.2, 0.5 - 0.31 * k, 0.72f), materials[1 + k]);
+    const glm::vec3 center(2.6f * static_cast<float>(exact_sin(angle)), (k & 1) != 0 ? 1.55f : -1.55f,
+                           2.6f * static_cast<float>(exact_cos(angle)));
+    add_cube(builder, center, CubeFrame(0.7 * k + 0.2, 0.5 - 0.31 * k, 0.80f), materials[1 + k]);
   }
   SceneSet set;
   set.fine = builder.take();
-  raster::Light sun, fill;
+  raster::Light sun, fill, back;
   sun.direction = glm::normalize(glm::vec3(0.45f, -0.75f, -0.55f));
   sun.color = {0.85f, 0.82f, 0.76f};
   fill.direction = glm::normalize(glm::vec3(-0.8f, 0.25f, 0.3f));
   fill.color = {0.18f, 0.21f, 0.28f};
-  set.fine.lights = {sun, fill};
+  back.direction = glm::normalize(glm::vec3(-0.35f, -0.45f, 0.85f));
+  back.color = {0.50f, 0.46f, 0.42f};
+  set.fine.lights = {sun, fill, back};
   set.fine.background = rgb8(30, 34, 46);
   set.default_split = "texture";
   return set;
 }
 
 raster::Camera cubes_camera(int frame, float aspect) {
-  return orbit_camera(frame, aspect, {0.0f, 0.0f, 0.0f}, 9.4f, 2.9f, 0.12, 96, 0.80f);
+  return orbit_camera(frame, aspect, {0.0f, -0.45f, 0.0f}, 10.6f, 2.6f, 0.12, 96, 0.74f);
 }
 
 }  // namespace pac::sim

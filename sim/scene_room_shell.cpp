@@ -21,32 +21,50 @@ TextureWindow repeats(float width, float height, float size) {
 
 constexpr auto kNoHoles = [](int, int) { return false; };
 
-// Heights at which all walls are cut; the window's are among them.
-std::vector<float> wall_heights() {
-  return {0.0f, 0.42f, kWindowSill, 1.32f, 1.78f, kWindowTop, kH};
+// Floor, walls and ceiling reach this far past one another: their grids differ, and nothing shows between them.
+constexpr float kOverlap = 0.01f;
+
+std::vector<float> equal_metres(int n, float length) {
+  std::vector<float> lines = equal_lines(n);
+  for (float& line : lines) line *= length;
+  return lines;
+}
+
+// A side of the room: from `origin` along unit vectors, cut at lines given in metres; the texture repeats every
+// `repeat` metres, its rows counted from the last line of t.
+template <class Skip>
+void add_side(SceneBuilder& builder, glm::vec3 origin, glm::vec3 along_s, glm::vec3 along_t, std::vector<float> lines_s,
+              std::vector<float> lines_t, uint32_t material, glm::vec2 repeat, Skip&& skip) {
+  const float width = lines_s.back() + 2 * kOverlap, height = lines_t.back() + 2 * kOverlap;
+  for (auto* lines : {&lines_s, &lines_t}) {
+    const float length = lines == &lines_s ? width : height;
+    for (float& line : *lines) line = (line + kOverlap) / length;
+    lines->front() = 0.0f;
+    lines->back() = 1.0f;
+  }
+  builder.grid(origin - (along_s + along_t) * kOverlap, along_s * width, along_t * height, lines_s, lines_t, material,
+               {-kOverlap / repeat.x, -kOverlap / repeat.y, width / repeat.x, height / repeat.y}, skip);
 }
 
 }  // namespace
 
 void add_shell(SceneBuilder& builder, const RoomMaterials& m) {
   builder.place(glm::vec3(0.0f));
-  const std::vector<float> heights = scaled(wall_heights(), kH);
-  const std::vector<float> floor_x = equal_lines(13);
-  const std::vector<float> floor_z =
-      scaled({0.0f, 1.2f, 2.0f, 2.5f, 2.95f, 3.4f, 3.85f, 4.3f, 4.75f, 5.2f, 5.6f, 6.0f, kD}, kD);
-  builder.grid({0, 0, kD}, {kW, 0, 0}, {0, 0, -kD}, floor_x, floor_z, m.floor,
-               {0, 0, kW / kPlankRepeat, kD / kPlankLength}, kNoHoles);
-  builder.patch({0, kH, 0}, {kW, 0, 0}, {0, 0, kD}, 7, 6, m.ceiling);
+  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const glm::vec2 wall(kWallRepeat, kWallRepeat);
+  const std::vector<float> floor_z = {0.0f, 1.2f, 2.0f, 2.5f, 2.95f, 3.4f, 3.85f, 4.3f, 4.75f, 5.2f, 5.6f, 6.0f, kD};
+  add_side(builder, {0, 0, kD}, x, -z, equal_metres(13, kW), floor_z, m.floor, {kPlankRepeat, kPlankLength}, kNoHoles);
+  add_side(builder, {0, kH, 0}, x, z, equal_metres(7, kW), equal_metres(6, kD), m.ceiling, wall, kNoHoles);
+  // The window's lines are among the heights at which walls are cut.
+  const std::vector<float> heights = {0.0f, 0.42f, kWindowSill, 1.32f, 1.78f, kWindowTop, kH};
   // Back wall, open behind the chimney.
-  const std::vector<float> back = {0, 0.4f, 0.8f, 1.2f, 1.6f, 3.2f, 3.6f, 4.05f, 4.5f, 4.95f, kW};
-  builder.grid({0, 0, 0}, {kW, 0, 0}, {0, kH, 0}, scaled(back, kW), heights, m.wall, repeats(kW, kH, kWallRepeat),
-               [](int i, int) { return i == 4; });
+  add_side(builder, {0, 0, 0}, x, y, {0, 0.4f, 0.8f, 1.2f, 1.6f, 3.2f, 3.6f, 4.05f, 4.5f, 4.95f, kW}, heights, m.wall,
+           wall, [](int i, int) { return i == 4; });
   // Left wall (s runs from the camera's end to the back), open at the window.
-  const std::vector<float> left = {0, 1.6f, 2.4f, 3.0f, kD - kWindowNear, 4.13f, 4.67f, kD - kWindowFar, 5.8f, kD};
-  builder.grid({0, 0, kD}, {0, 0, -kD}, {0, kH, 0}, scaled(left, kD), heights, m.wall, repeats(kD, kH, kWallRepeat),
-               [](int i, int j) { return i >= 4 && i <= 6 && j >= 2 && j <= 4; });
-  builder.patch({kW, 0, 0}, {0, 0, kD}, {0, kH, 0}, 5, 3, m.wall, repeats(kD, kH, kWallRepeat));
-  builder.patch({kW, 0, kD}, {-kW, 0, 0}, {0, kH, 0}, 2, 2, m.wall, repeats(kW, kH, kWallRepeat));
+  add_side(builder, {0, 0, kD}, -z, y, {0, 1.6f, 2.4f, 3.0f, kD - kWindowNear, 4.13f, 4.67f, kD - kWindowFar, 5.8f, kD},
+           heights, m.wall, wall, [](int i, int j) { return i >= 4 && i <= 6 && j >= 2 && j <= 4; });
+  add_side(builder, {kW, 0, 0}, z, y, equal_metres(5, kD), equal_metres(3, kH), m.wall, wall, kNoHoles);
+  add_side(builder, {kW, 0, kD}, -x, y, equal_metres(2, kW), equal_metres(2, kH), m.wall, wall, kNoHoles);
   // Skirting boards and ceiling beams.
   using B = SceneBuilder;
   builder.box({0, 0, 0}, {0.02f, 0.11f, kD}, m.trim, B::kRight | B::kTop, {1, 1, 4});
@@ -54,10 +72,10 @@ void add_shell(SceneBuilder& builder, const RoomMaterials& m) {
   builder.box({0, 0, 0}, {1.6f, 0.11f, 0.02f}, m.trim, B::kFront | B::kTop, {2, 1, 1});
   builder.box({3.2f, 0, 0}, {kW, 0.11f, 0.02f}, m.trim, B::kFront | B::kTop, {2, 1, 1});
   int beam_cuts = 4;
-  for (const float z : {0.75f, 2.25f, 3.75f, 5.25f}) {
-    builder.box({0, kH - 0.2f, z}, {kW, kH, z + 0.17f}, m.beam, B::kFront | B::kBack | B::kBottom, {beam_cuts, 1, 1},
-                kTimber);
-    if (z > 2.0f) beam_cuts = 3;  // the farther from the still's view, the fewer
+  for (const float beam : {0.75f, 2.25f, 3.75f, 5.25f}) {
+    builder.box({0, kH - 0.2f, beam}, {kW, kH, beam + 0.17f}, m.beam, B::kFront | B::kBack | B::kBottom,
+                {beam_cuts, 1, 1}, kTimber);
+    if (beam > 2.0f) beam_cuts = 3;  // the farther from the still's view, the fewer
   }
 }
 
@@ -66,11 +84,13 @@ void add_window(SceneBuilder& builder, const RoomMaterials& m) {
   builder.place(glm::vec3(0.0f));
   constexpr float kDepth = 0.16f;  // of the reveal
   const float z0 = kWindowFar, z1 = kWindowNear, y0 = kWindowSill, y1 = kWindowTop;
-  const glm::vec3 deep(-kDepth, 0, 0), along(0, 0, z1 - z0), up(0, y1 - y0, 0);
-  builder.patch(glm::vec3(-kDepth, y0, z1), -along, up, 2, 2, m.glass);
-  builder.patch({0, y0, z0}, up, deep, 1, 1, m.trim);     // far reveal
-  builder.patch({0, y0, z1}, deep, up, 1, 1, m.trim);     // near reveal
-  builder.patch({0, y1, z0}, along, deep, 1, 1, m.trim);  // lintel
+  // The reveals stand kOverlap behind the opening's rim and reach past the glass.
+  constexpr float e = kOverlap;
+  const glm::vec3 deep(-kDepth - e, 0, 0), along(0, 0, z1 - z0 + 2 * e), up(0, y1 - y0 + 2 * e, 0);
+  builder.patch({-kDepth, y0 - e, z1 + e}, -along, up, 2, 2, m.glass);
+  builder.patch({0, y0 - e, z0 - e}, up, deep, 1, 1, m.trim);     // far reveal
+  builder.patch({0, y0 - e, z1 + e}, deep, up, 1, 1, m.trim);     // near reveal
+  builder.patch({0, y1 + e, z0 - e}, along, deep, 1, 1, m.trim);  // lintel
   builder.box({-kDepth, y0 - 0.04f, z0 - 0.06f}, {0.12f, y0, z1 + 0.06f}, m.trim,
               B::kTop | B::kRight | B::kBottom | B::kFront | B::kBack, {1, 1, 2});
   // Frame and glazing bars, a little in front of the glass.
@@ -120,9 +140,9 @@ void add_fireplace(SceneBuilder& builder, const RoomMaterials& m) {
   const std::vector<float> ys = scaled({0, 0.41f, kOpenTop, 1.28f, 1.7f, 2.2f, kH}, kH);
   builder.grid({0, 0, kDeep}, {kWide, 0, 0}, {0, kH, 0}, xs, ys, m.brick, repeats(kWide, kH, kBrick),
                [](int i, int j) { return (i == 1 || i == 2) && j < 2; });
-  builder.grid({kWide, 0, kDeep}, {0, 0, -kDeep}, {0, kH, 0}, equal_lines(1), ys, m.brick, repeats(kDeep, kH, kBrick),
-               kNoHoles);
-  builder.grid({0, 0, 0}, {0, 0, kDeep}, {0, kH, 0}, equal_lines(1), equal_lines(2), m.brick,
+  builder.grid({kWide, 0, kDeep}, {0, 0, -kDeep - kOverlap}, {0, kH, 0}, equal_lines(1), ys, m.brick,
+               repeats(kDeep, kH, kBrick), kNoHoles);
+  builder.grid({0, 0, -kOverlap}, {0, 0, kDeep + kOverlap}, {0, kH, 0}, equal_lines(1), equal_lines(2), m.brick,
                repeats(kDeep, kH, kBrick), kNoHoles);
   // The firebox, with its logs on the embers.
   const float w = kOpenHigh - kOpenLow, back = 0.08f, d = kDeep - back;
