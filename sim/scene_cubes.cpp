@@ -81,7 +81,7 @@ SceneSet build_cubes(uint32_t seed) {
 }
 
 raster::Camera cubes_camera(int frame, float aspect) {
-  return orbit_camera(frame, aspect, {0.0f, -0.45f, 0.0f}, 10.6f, 2.6f, 0.12, 96, 0.74f);
+  return orbit_camera(frame, aspect, {0.0f, -0.25f, 0.0f}, 10.6f, 2.6f, 0.12, 96, 0.76f);
 }
 
 }  // namespace pac::sim
