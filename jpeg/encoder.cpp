@@ -64,7 +64,7 @@ EncodeOptions options_for(Effort effort, Tune tune, double quality) {
   EncodeOptions options;
   options.quality = quality;
   options.tune = tune;
-  options.table_source = effort == Effort::best ? TableSource::adapted : TableSource::tuned;
+  options.table_source = TableSource::tuned;
   options.huffman = effort == Effort::fast ? Huffman::standard : Huffman::optimal;
   options.dead_zone = effort == Effort::fast ? 0.0 : 0.14;
   options.trellis = effort == Effort::best;

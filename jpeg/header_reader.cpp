@@ -248,6 +248,7 @@ Result<void> HeaderReader::check_frame(const Segment& s) {
     return {};
   }
   if (frame.n_components == 2 && info.unsupported == nullptr) info.unsupported = "two components have no color meaning";
+  if (info.unsupported != nullptr) return {};  // nothing will be allocated
   if (static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height) > limits_.max_pixels)
     return Failure{Error::limit_exceeded, s.offset, "image has more pixels than the limit"};
   finish_frame(frame);
@@ -312,16 +313,16 @@ void HeaderReader::finish_info() {
   info.header_bytes = position_;
   info.default_huffman = !headers_.any_dht;
   info.color = color_model(headers_.frame, info.jfif, info.adobe_transform);
-  const Frame& frame = headers_.frame;
-  if (frame.n_components > 0 && info.quant_tables[frame.components[0].quant_table & 3])
-    info.estimated_quality = estimate_quality(*info.quant_tables[frame.components[0].quant_table & 3]);
 }
 
 Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits) {
   HeaderReader reader(bytes, limits);
   PAC_CHECK(reader.start());
   PAC_CHECK(reader.next_scan());
-  return reader.headers().info;
+  Info info = reader.headers().info;
+  const uint8_t first_table = info.components.empty() ? 0 : info.components[0].quant_table & 3;
+  if (info.quant_tables[first_table]) info.estimated_quality = estimate_quality(*info.quant_tables[first_table]);
+  return info;
 }
 
 }  // namespace pac::jpeg

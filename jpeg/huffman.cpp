@@ -1,49 +1,13 @@
 #include "jpeg/huffman.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+
+#include "base/huffman_lengths.h"
 
 namespace pac::jpeg {
 namespace {
-
-constexpr size_t kMaxLeaves = 257;  // 256 symbols and the one that reserves the code of all ones
-struct Leaf {
-  uint64_t weight;
-  int symbol;
-};
-
-// Code lengths of leaves with ascending weights: package-merge. Level 0 holds what can be bought with the deepest bits.
-// Each level merges, by weight, the leaves with the pairs of the level below (a leaf first where they weigh the same).
-void package_merge(std::span<const Leaf> leaves, int* lengths) {
-  const size_t n = leaves.size();
-  bool is_pair[kMaxCodeLength][2 * kMaxLeaves];
-  uint64_t weights[2][2 * kMaxLeaves];
-  size_t n_below = 0;
-  for (int level = 0; level < kMaxCodeLength; ++level) {
-    const uint64_t* below = weights[(level + 1) & 1];
-    uint64_t* here = weights[level & 1];
-    size_t leaf = 0, pair = 0, n_here = 0;
-    while (leaf < n || 2 * pair + 1 < n_below) {
-      const bool have_pair = 2 * pair + 1 < n_below;
-      const uint64_t pair_weight = have_pair ? below[2 * pair] + below[2 * pair + 1] : 0;
-      const bool take_leaf = leaf < n && (!have_pair || leaves[leaf].weight <= pair_weight);
-      is_pair[level][n_here] = !take_leaf;
-      here[n_here++] = take_leaf ? leaves[leaf].weight : pair_weight;
-      (take_leaf ? leaf : pair) += 1;
-    }
-    n_below = n_here;  // at most n + (2n - 1) / 2 < 2n
-  }
-  // The 2n - 2 cheapest nodes of the top level are bought; each leaf among them, at any level, costs its symbol a bit.
-  // Within a level the bought nodes are a prefix, so the bought leaves are the lightest ones.
-  std::fill(lengths, lengths + n, 0);
-  size_t bought = 2 * n - 2;
-  for (int level = kMaxCodeLength - 1; level >= 0 && bought > 0; --level) {
-    size_t n_pairs = 0;
-    for (size_t i = 0; i < bought; ++i) n_pairs += is_pair[level][i] ? 1 : 0;
-    for (size_t i = 0; i < bought - n_pairs; ++i) lengths[i] += 1;
-    bought = 2 * n_pairs;
-  }
-}
 
 HuffmanDecoder::Entry lookup_entry(uint32_t index, int code_length, uint8_t symbol) {
   const int size = symbol & 15, spare = HuffmanDecoder::kLookupBits - code_length;
@@ -79,27 +43,31 @@ void make_codes(const HuffmanSpec& spec, HuffmanCodes& codes) {
       codes.code_and_length[spec.symbols[k]] = code << 8 | static_cast<uint32_t>(length);
 }
 
-HuffmanSpec optimal_huffman(std::span<const uint32_t, 256> frequency) {
-  // Leaf 0 is nobody's symbol: it weighs nothing, so no code is longer than its, and given the last code of its length
-  // (all ones) it keeps that one free.
-  Leaf leaves[kMaxLeaves] = {{0, -1}};
-  size_t n = 1;
-  for (size_t symbol = 0; symbol < 256; ++symbol)
-    if (frequency[symbol] > 0) leaves[n++] = {frequency[symbol], static_cast<int>(symbol)};
+HuffmanSpec optimal_huffman(std::span<const uint64_t, 256> frequency) {
+  // Frequencies scaled so that the largest has 30 bits, at least 2: lighter than any of them, leaf 256 is nobody's
+  // symbol. So no code is longer than its, and as the last one of its length (all ones) it keeps that one free.
+  constexpr int kBits = 30;
+  constexpr size_t kReserved = 256;
+  uint64_t largest = 0;
+  for (const uint64_t f : frequency) largest = std::max(largest, f);
   HuffmanSpec spec;
-  if (n == 1) return spec;
-  std::sort(leaves, leaves + n, [](const Leaf& a, const Leaf& b) {
-    return a.weight != b.weight ? a.weight < b.weight : a.symbol < b.symbol;
-  });
-  int lengths[kMaxLeaves];
-  package_merge({leaves, n}, lengths);
-
-  // Lengths fall as weights rise: walking from the heaviest lists the symbols by code length.
+  if (largest == 0) return spec;
+  const int shift = static_cast<int>(std::bit_width(largest)) - kBits;
+  uint32_t weights[257] = {};
+  for (size_t s = 0; s < 256; ++s)
+    if (frequency[s] > 0)
+      weights[s] =
+          static_cast<uint32_t>(std::max<uint64_t>(shift > 0 ? frequency[s] >> shift : frequency[s] << -shift, 2));
+  weights[kReserved] = 1;
+  uint8_t lengths[257];
+  optimal_code_lengths(weights, kMaxCodeLength, lengths);
   int k = 0;
-  for (size_t i = n - 1; i > 0; --i) {
-    spec.count[lengths[i]] = static_cast<uint8_t>(spec.count[lengths[i]] + 1);
-    spec.symbols[k++] = static_cast<uint8_t>(leaves[i].symbol);
-  }
+  for (uint8_t length = 1; length <= kMaxCodeLength; ++length)
+    for (size_t s = 0; s < 256; ++s)
+      if (lengths[s] == length) {
+        spec.count[length] = static_cast<uint8_t>(spec.count[length] + 1);
+        spec.symbols[k++] = static_cast<uint8_t>(s);
+      }
   return spec;
 }
 

@@ -34,7 +34,7 @@ void make_codes(const HuffmanSpec& spec, HuffmanCodes& codes);
 // The table with the fewest total bits for symbols that occur frequency[s] times, with code lengths limited to 16 and
 // the all-ones code left free: package-merge (Larmore, Hirschberg 1990), which is optimal under the limit, where the
 // procedure of T.81 K.2 is a heuristic. Symbols that do not occur get no code.
-HuffmanSpec optimal_huffman(std::span<const uint32_t, 256> frequency);
+HuffmanSpec optimal_huffman(std::span<const uint64_t, 256> frequency);
 
 // For the decoder. The next kLookupBits bits index `lookup`; codes longer than that take the canonical search.
 struct HuffmanDecoder {

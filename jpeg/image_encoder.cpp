@@ -1,7 +1,5 @@
 #include "jpeg/image_encoder.h"
 
-#include <algorithm>
-
 #include "base/kernels/kernels.h"
 #include "jpeg/marker_writer.h"
 #include "jpeg/quantizer.h"
@@ -11,13 +9,13 @@ namespace pac::jpeg {
 namespace {
 
 // Costs for every symbol that can occur, also those that did not yet: counts are scaled up and each gets one more.
-void smooth(uint32_t (&counts)[256]) {
-  constexpr uint32_t kWeight = 64, kMax = UINT32_MAX / kWeight - 1;
+void smooth(uint64_t (&counts)[256]) {
+  constexpr uint64_t kWeight = 64;
   for (uint32_t symbol = 0; symbol < 256; ++symbol) {
     const uint32_t size = symbol & 15;
     if (size == 0 && symbol != 0 && symbol != 0xF0) continue;
     if (size > 10) continue;
-    counts[symbol] = std::min(counts[symbol], kMax) * kWeight + 1;
+    counts[symbol] = counts[symbol] * kWeight + 1;
   }
 }
 

@@ -68,8 +68,8 @@ struct EncodeOptions {
   Isa isa = best_isa();           // results never depend on it
 };
 
-// Presets: fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables and dead zone 0.14; best =
-// normal with adapted tables and trellis. fast and normal use tuned_tables(tune).
+// Presets, all with tuned_tables(tune): fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables
+// and dead zone 0.14; best = normal with the trellis.
 EncodeOptions options_for(Effort effort, Tune tune, double quality);
 
 // A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).
@@ -84,7 +84,7 @@ uint64_t encode_bound(int width, int height, Subsampling subsampling, int restar
 // then unspecified). encode_bound() bytes always suffice.
 Result<size_t> encode_into(ConstRgbView image, const EncodeOptions& options, std::span<uint8_t> out);
 
-// The same, reusable: keeps its working memory, so that further images of the same size and options allocate nothing.
+// The same, reusable: keeps its working memory from image to image.
 class Encoder {
  public:
   Encoder();
@@ -179,7 +179,7 @@ struct LenientImage {
 // between restart markers costs only those intervals. Errors: as decode, in the headers before the first scan.
 Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
 
-// Strict decoding, reusable: keeps its working memory, so that further files of the same shape allocate nothing.
+// Strict decoding, reusable: keeps its working memory from file to file.
 class Decoder {
  public:
   explicit Decoder(const Limits& limits = {}, Isa isa = best_isa());

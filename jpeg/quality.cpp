@@ -14,17 +14,25 @@ int64_t distance(const QuantTable& a, const QuantTable& b) {
 }  // namespace
 
 double estimate_quality(const QuantTable& luma) {
+  // First the nearest whole quality, then tenths around it.
+  int whole = 1;
   int64_t best = INT64_MAX;
-  int first = 0, last = 0;  // in tenths
-  for (int tenths = 1; tenths <= 1000; ++tenths) {
+  for (int quality = 1; quality <= 100; ++quality) {
+    const int64_t d = distance(luma, annex_k_tables(quality).luma);
+    if (d < best) whole = quality;
+    best = d < best ? d : best;
+  }
+  int first = 10 * whole, last = 10 * whole;
+  for (int tenths = 10 * whole - 10; tenths <= 10 * whole + 10; ++tenths) {
+    if (tenths < 1 || tenths > 1000) continue;
     const int64_t d = distance(luma, annex_k_tables(tenths / 10.0).luma);
     if (d < best) first = tenths;
     if (d <= best) last = tenths;
     best = d < best ? d : best;
   }
-  // Integer qualities are what encoders are given: prefer one inside the run.
-  const int middle = (first + last) / 2, whole = (middle + 5) / 10 * 10;
-  return (whole >= first && whole <= last ? whole : middle) / 10.0;
+  // Whole qualities are what encoders are given: prefer one inside the run of equals.
+  const bool whole_is_best = distance(luma, annex_k_tables(whole).luma) == best;
+  return whole_is_best ? whole : (first + last) / 2 / 10.0;
 }
 
 }  // namespace pac::jpeg

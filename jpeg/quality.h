@@ -6,7 +6,7 @@
 namespace pac::jpeg {
 
 // The real-valued IJG quality whose Annex K luma table comes nearest (least sum of absolute differences of steps), to
-// 1/10; among equals the one nearest to the middle of their run.
+// 1/10; a whole one where it is as near.
 double estimate_quality(const QuantTable& luma);
 
 }  // namespace pac::jpeg

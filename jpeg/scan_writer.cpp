@@ -35,7 +35,7 @@ Token* tokenize_block(const int16_t* levels, uint64_t nonzero, int dc_difference
 }
 
 void add_to_histogram(const Token* begin, const Token* end, Histogram& histogram) {
-  uint32_t* counts = histogram.count[0];
+  uint64_t* counts = histogram.count[0];
   for (const Token* token = begin; token != end; ++token)
     if ((*token & kRestartToken) == 0) counts[*token >> 16] += 1;
 }

@@ -23,7 +23,7 @@ constexpr Token kRestartToken = 0x80000000u;
 constexpr size_t kMaxTokensInBlock = 66;  // DC, 63 AC, and EOB; fewer AC make room for each ZRL
 
 struct Histogram {
-  uint32_t count[kTableCount][256] = {};
+  uint64_t count[kTableCount][256] = {};
 };
 
 // The tokens of one block. levels: 64 in zigzag order; bit k of `nonzero`: level k is not 0. dc_difference: DIFF,

@@ -12,6 +12,8 @@ namespace pac::jpeg {
 // Histograms of the DCT coefficients of an image, for each frequency, of luma and of both chroma components together.
 class TableDesigner {
  public:
+  static constexpr int kKinds = 7;  // of blocks, by activity
+
   // `source` must keep all rows.
   void measure(CoefficientSource& source);
   // For each frequency the step with the least bits + kBitsPerSquaredStep * sum((error / reference)^2), the reference
@@ -22,7 +24,8 @@ class TableDesigner {
   // Magnitudes in units of half a coefficient: fine enough for step 1.
   static constexpr int kBins = 2 * 1024 + 64;
   struct Histograms {
-    std::vector<uint32_t> counts;  // [64 natural][kBins]
+    std::vector<uint32_t> counts[kKinds];  // [64 natural][kBins]
+    int n_bins[kKinds][64] = {};           // beyond: zeros
     uint64_t n_blocks = 0;
     void reset();
   };

@@ -40,9 +40,9 @@ double scale_percent(double quality) {
   return q < 50.0 ? 5000.0 / q : 200.0 - 2.0 * q;
 }
 
+// Positive values are truncated, which is their floor.
 uint16_t to_step(double value) {
-  const double step = std::floor(value);
-  return static_cast<uint16_t>(step < 1.0 ? 1.0 : step > 255.0 ? 255.0 : step);
+  return static_cast<uint16_t>(value < 1.0 ? 1 : value >= 255.0 ? 255 : static_cast<int>(value));
 }
 
 QuantTable scaled(const double (&base)[64], double percent) {
