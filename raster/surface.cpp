@@ -64,7 +64,10 @@ Result<void> set_sampler(const Texture& texture, const Material& material, Textu
   out.clamp = material.wrap == Wrap::clamp ? 1 : 0;
   for (int i = 0; i < kMaxMipLevels; ++i) {  // beyond the last level: the last level again
     const Texture::Level& level = texture.levels[std::min(static_cast<size_t>(i), texture.levels.size() - 1)];
-    if (level.width < 1 || level.height < 1 || level.pitch != level.width + 1 ||
+    const size_t size_shift = std::min(static_cast<size_t>(i), texture.levels.size() - 1);
+    if (level.width != std::max(texture.width() >> size_shift, 1) ||
+        level.height != std::max(texture.height() >> size_shift, 1) || level.width < 1 || level.height < 1 ||
+        level.pitch != level.width + 1 ||
         (level.offset + static_cast<size_t>(level.pitch) * static_cast<size_t>(level.height)) * 4 >
             texture.texels.size())
       return Failure{Error::corrupt, 0, "texture was not made by make_texture"};

@@ -22,8 +22,10 @@ void TilePainter::paint(const PaintInput& input, int tile) {
     if (triangles_.empty() && s > 0) break;
     rasterize(input, origin);
     if (s == 0) write_depth_and_id(input, area);
-    collect_packs(area);
-    for (int r = 0; r < n_renderings; ++r) shade(input, r, origin);
+    for (int r = 0; r < n_renderings; ++r) {
+      n_packs_ = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+      shade(input, r, origin);
+    }
   }
   write_color(input, area);
 }
@@ -35,38 +37,22 @@ void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
     input.kernels->tile.rasterize(*triangles_[i], static_cast<uint32_t>(i + 1), origin, depth_, ids_);
 }
 
-// One pack for each triangle that is seen in a group of eight neighbors.
-void TilePainter::collect_packs(const Area& area) {
-  packs_.clear();
-  for (int y = 0; y < area.height; ++y) {
-    for (int x = 0; x < area.width; x += 8) {
-      const uint32_t* ids = ids_ + y * kTileSize + x;
-      uint32_t left = 0xFF;
-      while (left != 0) {
-        const uint32_t id = ids[std::countr_zero(left)];
-        uint32_t mask = 0;
-        for (uint32_t k = 0; k < 8; ++k) mask |= (ids[k] == id ? 1u : 0u) << k;
-        left &= ~mask;
-        if (id != 0)
-          packs_.push_back(
-              {triangles_[id - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y), static_cast<uint8_t>(mask)});
-      }
-    }
-  }
-}
-
 // Packs of one batch state together, in calls of up to kBatchPacks.
 void TilePainter::shade(const PaintInput& input, int rendering, SamplePosition origin) {
   const std::vector<Surface>& surfaces = *input.surfaces[rendering];
-  size_t from = 0;
-  while (from < packs_.size()) {
-    const uint32_t batch = packs_[from].triangle->state[rendering];
-    const auto rest = std::stable_partition(packs_.begin() + static_cast<ptrdiff_t>(from), packs_.end(),
-                                            [&](const LanePack& p) { return p.triangle->state[rendering] == batch; });
-    const auto to = static_cast<size_t>(rest - packs_.begin());
-    for (; from < to; from += std::min<size_t>(kBatchPacks, to - from))
-      shade_batch(input, rendering, surfaces[batch], origin, packs_.data() + from,
-                  static_cast<int>(std::min<size_t>(kBatchPacks, to - from)));
+  for (int left = n_packs_; left > 0;) {
+    const uint32_t state = packs_[0].triangle->state[rendering];
+    int n = 0, rest = 0;
+    for (int i = 0; i < left; ++i) {
+      const LanePack pack = packs_[i];
+      if (pack.triangle->state[rendering] == state)
+        batch_[n++] = pack;
+      else
+        packs_[rest++] = pack;
+    }
+    left = rest;
+    for (int i = 0; i < n; i += kBatchPacks)
+      shade_batch(input, rendering, surfaces[state], origin, batch_ + i, std::min(kBatchPacks, n - i));
   }
 }
 

@@ -38,7 +38,6 @@ class TilePainter {
     int x, y, width, height;
   };
   void rasterize(const PaintInput& input, SamplePosition origin);
-  void collect_packs(const Area& area);
   void shade(const PaintInput& input, int rendering, SamplePosition origin);
   void shade_batch(const PaintInput& input, int rendering, const Surface& surface, SamplePosition origin,
                    const LanePack* packs, int n);
@@ -53,7 +52,8 @@ class TilePainter {
   alignas(64) float texels_[3 * kBatchLanes];
   alignas(64) float specular_[3 * kBatchLanes];
   std::vector<const RasterTriangle*> triangles_;
-  std::vector<LanePack> packs_, sorted_;
+  LanePack packs_[kTilePixels], batch_[kTilePixels];
+  int n_packs_ = 0;
 };
 
 }  // namespace pac::raster

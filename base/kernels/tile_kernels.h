@@ -64,12 +64,12 @@ struct InterpolateTarget {
 // horizontal neighbours are one 8-byte load.
 struct TextureSampler {
   const uint8_t* texels;
-  int32_t level_count;            // 1..kMaxMipLevels
-  int32_t filter;                 // 0 nearest, 1 bilinear (both: nearest level), 2 trilinear
-  int32_t clamp;                  // 0: repeat
-  int32_t offset[kMaxMipLevels];  // first texel of the level
-  int32_t width[kMaxMipLevels], height[kMaxMipLevels];
-  int32_t pitch[kMaxMipLevels];  // width + 1
+  int32_t level_count;                                  // 1..kMaxMipLevels
+  int32_t filter;                                       // 0 nearest, 1 bilinear (both: nearest level), 2 trilinear
+  int32_t clamp;                                        // 0: repeat
+  int32_t offset[kMaxMipLevels];                        // first texel of the level
+  int32_t width[kMaxMipLevels], height[kMaxMipLevels];  // of level i: max(1, that of level 0 >> i)
+  int32_t pitch[kMaxMipLevels];                         // width + 1
 };
 
 // Colors in units where 255 is full intensity; everything finite, magnitudes below 2^20.
@@ -95,6 +95,12 @@ struct TileKernels {
   // Depth-tests and writes the samples of the tile inside `triangle`: where z < depth: depth = z, ids = id.
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
+
+  // One pack for each triangle seen in each group of eight of the tile's first width x height pixels, in order. ids: 0
+  // = none, else 1 + index into `triangles`; groups of eight are read whole. Room for kTileSize^2 packs; returns how
+  // many.
+  int (*collect_packs)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
+                       LanePack* packs);
 
   // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too.
   void (*interpolate)(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target);

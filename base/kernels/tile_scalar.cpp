@@ -37,6 +37,25 @@ void rasterize(const RasterTriangle& t, uint32_t id, SamplePosition origin, floa
   }
 }
 
+int collect_packs(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, LanePack* packs) {
+  int n = 0;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; x += 8) {
+      const uint32_t* group = ids + y * kTileSize + x;
+      uint32_t left = 0xFF;
+      for (uint32_t k = 0; k < 8; ++k) {
+        if ((left >> k & 1) == 0) continue;
+        uint32_t mask = 0;
+        for (uint32_t i = k; i < 8; ++i) mask |= (group[i] == group[k] ? 1u : 0u) << i;
+        left &= ~mask;
+        if (group[k] != 0)
+          packs[n++] = {triangles[group[k] - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y),
+                        static_cast<uint8_t>(mask)};
+      }
+    }
+  return n;
+}
+
 // E_i / 2^shift of lane k of a pack whose lane 0 has E_i = first. Exact (rounded down) up to shift 8, which is
 // area 2^22 pixels; beyond, the error is under 8 of more than 2^30. Never negative inside the triangle, up to that
 // error, and modulo 2^32 outside.
@@ -282,6 +301,7 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
 
 void fill_tile_scalar(TileKernels& table) {
   table.rasterize = rasterize;
+  table.collect_packs = collect_packs;
   table.interpolate = interpolate;
   table.light = light;
   table.sample_texture = sample_texture;
