@@ -30,7 +30,7 @@ const char* verdict_class(Verdict verdict) {
 }
 
 const char* verdict_text(Verdict verdict) {
-  constexpr const char* kTexts[] = {"noted", "as in the paper", "differs", "against the paper"};
+  constexpr const char* kTexts[] = {"beyond the paper", "as in the paper", "differs", "against the paper"};
   return kTexts[static_cast<size_t>(verdict)];
 }
 

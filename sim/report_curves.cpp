@@ -116,4 +116,16 @@ std::vector<Plot> demo_plots(const PaperResults& results) {
   return plots;
 }
 
+std::optional<double> mean_ssim_gain(const FigureSet& set, double low_ratio, double high_ratio) {
+  double sum = 0;
+  int count = 0;
+  for (const PlotPoint& point : gain_series(set, Measure::ssim).points) {
+    if (point.x < low_ratio || point.x >= high_ratio) continue;
+    sum += point.y;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
 }  // namespace pac::sim

@@ -172,7 +172,10 @@ IllustratedReport demo_report(const PaperResults& results) {
   report.plot_paragraphs = {
       "Every point is a JPEG file; both arms use optimal Huffman codes here. Lines at 25:1, above which the paper "
       "expects its "
-      "method to pay, and at 12,500 bytes, a frame’s share of 2 Mb/s at 20 frames a second."};
+      "method to pay, and at 12,500 bytes, a frame’s share of 2 Mb/s at 20 frames a second.",
+      "SSIM jumps where a coarse DC step turns a black background into one that is nearly black: an error of one or "
+      "two levels "
+      "that nobody sees, but that SSIM counts in full over a large flat area. PSNR beside it does not jump."};
   report.findings = paper_claims(results);
   report.methods = method_texts();
   report.command_lines = {"pac demo -o out", "pac compare room -o room", "pac compare pin --quality 15 --json"};

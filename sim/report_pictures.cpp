@@ -172,8 +172,7 @@ Text crops_html(const ReportFigure& figure) {
   if (figure.crops.empty()) return "";
   Text crops;
   for (const ReportCrop& crop : figure.crops) crops += crop_html(figure, crop);
-  return html_tag("h3", "", "Enlarged") +
-         html_tag("div", "class=\"grid\" style=\"--columns:3;--widest:576px\"", "\n" + crops);
+  return html_tag("h3", "", "Enlarged") + html_tag("div", "class=\"grid crops\"", "\n" + crops);
 }
 
 }  // namespace

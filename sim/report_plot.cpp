@@ -11,7 +11,7 @@ namespace pac::sim {
 namespace {
 
 // The drawing's own units; the page scales it.
-constexpr double kWidth = 520, kHeight = 372;
+constexpr double kWidth = 520, kHeight = 388;
 constexpr double kLeft = 58, kRight = 504, kTop = 44, kBottom = 318;
 
 std::string text_of(double number, int digits) {
@@ -134,7 +134,7 @@ std::string x_axis(const Plot& plot, const Axis& x) {
     svg += label(at, kBottom + 17, "tick middle", tick_text(tick.value));
     last = at;
   }
-  svg += label((kLeft + kRight) / 2, kBottom + 38, "axis middle", plot.x_label);
+  svg += label((kLeft + kRight) / 2, kBottom + 36, "axis middle", plot.x_label);
   return svg;
 }
 
@@ -213,8 +213,8 @@ std::string legend(const Plot& plot) {
   double at = kLeft;
   for (size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
-    svg += "<g class=\"series " + series.style + "\"><path d=\"M" + text_of(at, 0) + " 364h22\"/>" +
-           marker(at + 11, 364, i) + "</g>" + label(at + 28, 368, "tick", series.name);
+    svg += "<g class=\"series " + series.style + "\"><path d=\"M" + text_of(at, 0) + " 376h22\"/>" +
+           marker(at + 11, 376, i) + "</g>" + label(at + 28, 380, "tick", series.name);
     at += 44 + 6.4 * static_cast<double>(series.name.size());
   }
   return svg;

@@ -63,7 +63,7 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 .table-one { width: 100%; min-width: 46rem; }
 .table-one th, .table-one td { padding: .38rem .8rem; text-align: right; vertical-align: top; }
 .table-one thead th { font-weight: 600; border-bottom: 1px solid var(--ink); }
-.table-one thead tr:first-child th { border: 0; text-align: center; padding-bottom: 0; font: 600 1.02rem/1.4 var(--serif); }
+.table-one thead tr:first-child th { border: 0; text-align: center; padding-bottom: 0; font: 600 1.02rem/1.4 var(--serif); text-transform: capitalize; }
 .table-one th[scope=row], .table-one td.note, .table-one .letter { text-align: left; font-weight: 400; }
 .table-one th[scope=row] { padding-left: 1.6rem; min-width: 15rem; }
 .table-one tr.part th { text-align: left; font: 600 1rem/1.4 var(--serif); padding: 1.1rem .8rem .25rem 0; border-top: 1px solid var(--rule); }
@@ -91,6 +91,8 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 .row > .label { font: 600 .88rem/1.4 var(--sans); margin: 0 0 .7rem; }
 .grid { display: grid; gap: 1.4rem 1.1rem; grid-template-columns: repeat(var(--columns, 3), minmax(0, var(--widest, 100%))); }
 @media (max-width: 60rem) { .grid { grid-template-columns: repeat(min(2, var(--columns, 3)), minmax(0, var(--widest, 100%))); } }
+.grid.crops { grid-template-columns: repeat(3, minmax(0, 576px)); }
+@media (max-width: 40rem) { .grid { gap: 1rem .6rem; } .crops figcaption { font-size: .74rem; } }
 figure { margin: 0; }
 figure img, .stage img, .crop img { display: block; background: var(--faint); }
 .picture img { width: 100%; height: auto; }
@@ -143,6 +145,7 @@ kbd { font: .92em/1 ui-monospace, Menlo, Consolas, monospace; border: 1px solid 
 /* drawings */
 svg { display: block; width: 100%; height: auto; font-family: var(--sans); }
 .plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 27rem), 1fr)); gap: 2.2rem 2.5rem; margin: 1.8rem 0; }
+.plots figure > p::first-letter { text-transform: uppercase; }
 .plots figure > p { font: 600 .95rem/1.4 var(--sans); margin: 0 0 .2rem; }
 .plot text { fill: var(--ink); font-size: 12px; font-variant-numeric: lining-nums tabular-nums; }
 .plot .tick, .plot .note { fill: var(--soft); font-size: 11.5px; } .plot .middle { text-anchor: middle; } .plot .end { text-anchor: end; }
