@@ -134,7 +134,7 @@ std::string crossing_text(const FigureSet& set, const Crossing& crossing) {
 
 // "+0.0312", or "none" where the curves do not reach that far.
 std::string gain_text(const std::optional<double>& gain) {
-  return gain ? (*gain >= 0 ? "+" : "") + decimal_text(*gain, 4) : "none";
+  return gain ? std::string(*gain >= 0 ? "+" : "") + decimal_text(*gain, 4) : "none";
 }
 
 ReportFinding ratio_claim(const PaperResults& results) {
