@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/kernels/kernels.h"
 #include "tests/support/json_check.h"
 #include "tests/support/run_cli.h"
 
@@ -138,6 +139,16 @@ TEST_CASE("--json prints one JSON object and nothing else, for every command tha
   CHECK(number(metrics, "ssim") < 1);
   CHECK(folder.exists("map.png"));
   CHECK(json(folder.pac("metrics a.png a.png --json")).at("psnr_rgb_db") == "null");
+}
+
+TEST_CASE("isa lists every kernel") {
+  const CliFolder folder;
+  const auto isa = json(folder.pac("isa --json"));
+  size_t n_listed = 0;
+  while (isa.contains("kernels[" + std::to_string(n_listed) + "].name")) ++n_listed;
+  const size_t n_kernels =
+      (sizeof(pac::BlockKernels) + sizeof(pac::PixelKernels) + sizeof(pac::TileKernels)) / sizeof(void*);
+  CHECK(n_listed == n_kernels);
 }
 
 TEST_CASE("bad data is exit code 1, named with file and byte, and leaves no file behind") {

@@ -23,9 +23,27 @@ struct Kernel {
 #family, #name, [](const Kernels& table) { return reinterpret_cast<AnyFunction>(table.family.name); } \
   }
 
+// Every entry of the three families (a test counts them).
 const Kernel kKernelList[] = {
+    PAC_KERNEL(block, fdct_islow),
+    PAC_KERNEL(block, idct_islow),
+    PAC_KERNEL(block, quantize),
     PAC_KERNEL(pixel, difference_row),
     PAC_KERNEL(pixel, composite_row),
+    PAC_KERNEL(pixel, ycc_from_rgb_row),
+    PAC_KERNEL(pixel, rgb_from_ycc_row),
+    PAC_KERNEL(pixel, downsample_h2v1_row),
+    PAC_KERNEL(pixel, downsample_h2v2_row),
+    PAC_KERNEL(pixel, upsample_h2v1_row),
+    PAC_KERNEL(pixel, upsample_h2v2_row),
+    PAC_KERNEL(pixel, upsample_h1v2_row),
+    PAC_KERNEL(tile, rasterize),
+    PAC_KERNEL(tile, collect_packs),
+    PAC_KERNEL(tile, interpolate),
+    PAC_KERNEL(tile, light),
+    PAC_KERNEL(tile, sample_texture),
+    PAC_KERNEL(tile, accumulate),
+    PAC_KERNEL(tile, resolve_row),
 };
 
 // The first instruction set, in ascending order, whose table holds the same function: its file exports it.
