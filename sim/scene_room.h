@@ -13,8 +13,8 @@ constexpr float kRoomWidth = 5.4f, kRoomDepth = 6.4f, kRoomHeight = 2.75f;
 // Indices of the room's materials.
 struct RoomMaterials {
   uint32_t floor, wall, ceiling, beam, trim, brick, stone, soot, ember, glass, curtain, brass, rug, walnut, oak, fabric,
-      tartan, cushion, books, paper, landscape, seascape, still_life, abstract, frame, shade, bulb, iron, porcelain,
-      apple, orange;
+      tartan, cushion, books, paper, landscape, seascape, still_life, abstract, frame, shade, bulb, porcelain, apple,
+      orange;
 };
 
 RoomMaterials add_room_materials(SceneBuilder& builder, uint32_t seed);  // scene_room_materials.cpp

@@ -36,7 +36,6 @@ RoomMaterials add_room_materials(SceneBuilder& builder, uint32_t seed) {
   m.frame = builder.add_color("gilt frame", rgb8(176, 132, 62));
   m.shade = builder.add_texture("parchment", parchment(128, 128, seed + 19u));
   m.bulb = builder.add_color("lamp's inside", rgb8(255, 236, 190));
-  m.iron = builder.add_color("iron", rgb8(62, 60, 62));
   m.porcelain = builder.add_texture("porcelain", marble(128, 128, rgb8(214, 222, 232), rgb8(58, 86, 160), seed + 20u));
   m.apple = builder.add_color("apple", rgb8(186, 44, 32));
   m.orange = builder.add_color("orange", rgb8(232, 136, 36));

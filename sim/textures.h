@@ -14,9 +14,8 @@ RgbaImage oak_planks(int width, int height, uint32_t seed);  // tiles; 6 boards 
 RgbaImage wood_grain(int width, int height, glm::vec3 light, glm::vec3 dark,
                      uint32_t seed);                         // tiles; grain along v, one repeat 4 times as long as wide
 RgbaImage brick_wall(int width, int height, uint32_t seed);  // tiles; 4 bricks by 12 courses
-RgbaImage plaster(int width, int height, glm::vec3 color, uint32_t seed);                       // tiles
-RgbaImage wallpaper(int width, int height, glm::vec3 ground, glm::vec3 figure, uint32_t seed);  // tiles
-RgbaImage marble(int width, int height, glm::vec3 ground, glm::vec3 vein, uint32_t seed);       // tiles
+RgbaImage plaster(int width, int height, glm::vec3 color, uint32_t seed);                      // tiles
+RgbaImage marble(int width, int height, glm::vec3 ground, glm::vec3 vein, uint32_t seed);      // tiles
 RgbaImage flagstones(int width, int height, uint32_t seed);                                    // tiles; irregular slabs
 RgbaImage woven_fabric(int width, int height, glm::vec3 warp, glm::vec3 weft, uint32_t seed);  // tiles
 RgbaImage tartan(int width, int height, uint32_t seed);                                        // tiles

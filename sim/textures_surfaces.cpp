@@ -1,5 +1,4 @@
 // Wood, brick, stone, plaster, cloth.
-#include "base/exact_math.h"
 #include "sim/textures.h"
 #include "sim/textures_canvas.h"
 
@@ -8,10 +7,6 @@ namespace pac::sim {
 namespace {
 
 constexpr int kNoPeriod = 1 << 16;  // lattice cells; octaves double it
-
-float sine(float x) {
-  return static_cast<float>(exact_sin(static_cast<double>(x)));
-}
 
 // Triangle wave in [0, 1], period 1.
 float triangle_wave(float x) {
@@ -128,37 +123,6 @@ RgbaImage plaster(int width, int height, glm::vec3 color, uint32_t seed) {
   }
   relief(image, bumps, 0.10f);
   return image;
-}
-
-RgbaImage wallpaper(int width, int height, glm::vec3 ground, glm::vec3 figure, uint32_t seed) {
-  return paint(width, height, [&](float u, float v) {
-    // Stripes half a repeat wide; on every other stripe a leaf-and-flower sprig, on the others a dotted line.
-    const float weave =
-        0.02f * gradient_noise(u * 96, v * 96, 96, 96, seed) + 0.02f * fractal_noise(u * 3, v * 3, 3, 3, 3, seed + 1u);
-    const bool wide = u < 0.5f;
-    glm::vec3 color = wide ? ground : blend(ground, figure, 0.18f);
-    const float line = std::fmin(std::fabs(u - 0.5f), std::fmin(u, 1.0f - u));
-    color = blend(color, figure, 0.5f * (1.0f - smooth_step(0.006f, 0.014f, line)));
-    const float sx = (wide ? u - 0.25f : u - 0.75f) * 4.0f,
-                sy = (fraction(v * 2.0f + (wide ? 0.0f : 0.5f)) - 0.5f) * 2.0f;
-    const float stem = std::fabs(sx - 0.16f * sine(sy * 3.1416f));
-    float ink = wide ? 0.7f * (1.0f - smooth_step(0.03f, 0.07f, stem)) : 0.0f;
-    const float r = std::sqrt(sx * sx + sy * sy);
-    if (wide) {
-      const float petals = 0.24f + 0.10f * sine(5.0f * angle_turns(sx, sy) * 6.2831853f);
-      ink = std::fmax(ink, 1.0f - smooth_step(petals - 0.04f, petals + 0.04f, r));
-      ink *= smooth_step(0.05f, 0.10f, r);
-      for (int k = 0; k < 4; ++k) {  // leaves, alternating sides
-        const float ly = sy - (-0.75f + 0.5f * static_cast<float>(k)), side = (k & 1) != 0 ? 1.0f : -1.0f;
-        const float lx = sx - 0.16f * sine(sy * 3.1416f) - side * 0.20f;
-        const float leaf = lx * lx * 22.0f + (ly - 0.5f * side * lx) * (ly - 0.5f * side * lx) * 90.0f;
-        ink = std::fmax(ink, 0.85f * (1.0f - smooth_step(0.6f, 1.0f, leaf)));
-      }
-    } else {
-      ink = 0.8f * (1.0f - smooth_step(0.09f, 0.15f, r));
-    }
-    return blend(color, figure, ink * 0.75f) * (1.0f + weave);
-  });
 }
 
 RgbaImage marble(int width, int height, glm::vec3 ground, glm::vec3 vein, uint32_t seed) {
