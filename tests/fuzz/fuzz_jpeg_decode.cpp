@@ -1,0 +1,43 @@
+// Any bytes as a JPEG file: information, strict, lenient and reused decoding.
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "base/hash.h"
+#include "jpeg/jpeg.h"
+
+namespace {
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const std::span<const uint8_t> bytes(data, size);
+  pac::Limits limits;
+  limits.max_pixels = 1 << 16;
+  limits.max_bytes = 1 << 22;
+  const auto info = pac::jpeg::read_info(bytes, limits);
+  const auto strict = pac::jpeg::decode(bytes, limits);
+  const auto lenient = pac::jpeg::decode_lenient(bytes, limits);
+  if (!info.ok()) require(!strict.ok() && !lenient.ok());
+  if (!strict.ok()) {
+    require(strict.failure().byte_offset <= size && strict.failure().text[0] != 0);
+    if (lenient.ok()) require(lenient->failure.has_value());
+  }
+  // Every pixel is looked at: uninitialized ones show under MemorySanitizer, lost ones under the comparison.
+  const uint64_t lenient_hash = lenient.ok() ? pac::hash_pixels(lenient->image.view()) : 0;
+  if (strict.ok()) {
+    require(lenient.ok() && !lenient->failure.has_value() && pac::hash_pixels(strict->view()) == lenient_hash);
+    require(strict->width() == info->width && strict->height() == info->height);
+    pac::jpeg::Decoder decoder(limits, pac::Isa::scalar);
+    pac::RgbImage again(info->width, info->height);
+    for (int i = 0; i < 2; ++i) {
+      require(decoder.decode_into(bytes, again.view()).ok());
+      require(pac::hash_pixels(again.view()) == lenient_hash);
+    }
+  }
+  return 0;
+}
