@@ -2,10 +2,10 @@
 //   jpeg_peers [PICTURE.ppm|.png ...]     without an argument: the synthetic picture of bench/jpeg_images.h
 // Prints megapixels a second of both and their ratio (above 1: ours is faster), for standard and optimal Huffman tables
 // (4:2:0, Annex K tables, the same bytes from both encoders in the first case) and for decoding (their file, both).
-#include <jpeglib.h>
 #include <time.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <vector>
@@ -14,6 +14,10 @@
 #include "base/image_io.h"
 #include "bench/jpeg_images.h"
 #include "jpeg/jpeg.h"
+
+// clang-format off: jpeglib.h needs size_t and FILE from above
+#include <jpeglib.h>
+// clang-format on
 
 namespace {
 
