@@ -1,5 +1,6 @@
 #include "sim/report_claims.h"
 
+#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -117,7 +118,7 @@ ReportFinding equal_quality_claim(const FigureSet& room) {
   finding.ours = std::string("At the SSIM and the rms of the image-based arm at q 15: ") +
                  sentence("SSIM", room.equal_ssim_gain) + ", " + sentence("rms", room.equal_rms_gain) + ".";
   const double gain = room.equal_ssim_gain.value_or(0);
-  finding.verdict = gain > 2 ? Verdict::agrees : gain > 1 ? Verdict::differs : Verdict::against;
+  finding.verdict = gain >= 2.5 ? Verdict::agrees : gain > 1 ? Verdict::differs : Verdict::against;
   return finding;
 }
 
@@ -132,9 +133,9 @@ std::string crossing_text(const FigureSet& set, const Crossing& crossing) {
          ":1";
 }
 
-// "+0.0312", or "none" where the curves do not reach that far.
+// "+0.0312", or "not reached" where the curves do not reach that far.
 std::string gain_text(const std::optional<double>& gain) {
-  return gain ? std::string(*gain >= 0 ? "+" : "") + decimal_text(*gain, 4) : "none";
+  return gain ? std::string(*gain >= 0 ? "+" : "−") + decimal_text(std::fabs(*gain), 4) : "not reached";
 }
 
 ReportFinding ratio_claim(const PaperResults& results) {

@@ -77,6 +77,7 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 /* findings */
 .findings { list-style: none; padding: 0; margin: 1.6rem 0; display: grid; gap: .9rem; max-width: 60rem; }
 .findings li { display: grid; grid-template-columns: 9.5rem 1fr; gap: 0 1.2rem; border-top: 1px solid var(--rule); padding-top: .9rem; }
+.findings .claim::first-letter { text-transform: uppercase; }
 .findings .claim { margin: 0 0 .25rem; max-width: none; }
 .findings .ours { margin: 0; color: var(--soft); font: .92rem/1.5 var(--sans); font-variant-numeric: lining-nums; max-width: none; }
 .chip { font: 600 .78rem/1.3 var(--sans); padding: .2rem 0; display: flex; align-items: baseline; gap: .45rem; color: var(--neutral); }
@@ -90,7 +91,7 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 .row { margin: 1.8rem 0; }
 .row > .label { font: 600 .88rem/1.4 var(--sans); margin: 0 0 .7rem; }
 .grid { display: grid; gap: 1.4rem 1.1rem; grid-template-columns: repeat(var(--columns, 3), minmax(0, var(--widest, 100%))); }
-@media (max-width: 60rem) { .grid { grid-template-columns: repeat(min(2, var(--columns, 3)), minmax(0, var(--widest, 100%))); } }
+@media screen and (max-width: 60rem) { .grid { grid-template-columns: repeat(min(2, var(--columns, 3)), minmax(0, var(--widest, 100%))); } }
 .grid.crops { grid-template-columns: repeat(3, minmax(0, 576px)); }
 @media (max-width: 40rem) { .grid { gap: 1rem .6rem; } .crops figcaption { font-size: .74rem; } }
 figure { margin: 0; }
@@ -171,7 +172,9 @@ footer { padding: 2.5rem 0 4rem; border-top: 1px solid var(--rule); margin-top: 
 @media print {
   :root { --paper: #fff; --raised: #fff; --ink: #000; --soft: #444; --rule: #bbb; --faint: #eee; --image: #a04a00; --polygon: #104a90;
     --model: #5a3c83; --good: #1a5f2c; --bad: #90100a; --neutral: #554; }
-  body { font-size: 10pt; } .masthead { padding-top: 0; } nav.contents, .script .wipe, .script .to-wipe, .skip { display: none; }
+  body { font-size: 10pt; } .masthead { padding-top: 0; } nav.contents, .script .wipe:not(.compact), .script .to-wipe, .skip, .handle::after { display: none; }
+  .masthead .wrap:has(.compact) { grid-template-columns: minmax(0, 1fr) minmax(0, 38%); } .highlights { grid-column: 1 / -1; grid-template-columns: repeat(4, 1fr); margin-top: 1rem; }
+  .highlights dt { font-size: 1.4rem; } h1 { font-size: 2rem; } .lede { font-size: 1rem; } .plots { grid-template-columns: 1fr 1fr; } .crops { width: 75%; }
   section { padding-top: 1rem; margin-top: 1rem; } .row, figure, .findings li, tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
   .scroll { overflow: visible; } .table-one { min-width: 0; font-size: 8pt; } .table-one td.note { min-width: 0; }
   * { print-color-adjust: exact; -webkit-print-color-adjust: exact; }

@@ -159,7 +159,7 @@ int run_compare(Args args) {
   const auto still = sim::run_still(source->set, source->camera(request.frame, aspect), request.still);
   if (!still.ok()) return data_error(request.scene, still.failure());
   if (!request.out.empty()) {
-    const auto page = sim::compare_report(source->name, *still, command_line(args));
+    const auto page = sim::compare_report(source->name.substr(source->name.rfind('/') + 1), *still, command_line(args));
     if (const int code = write_report(request.out, page, options); code != kDone) return code;
   }
   if (options.json) return print_as_json(source->name, *still);
