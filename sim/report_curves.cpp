@@ -90,10 +90,11 @@ Plot gain_plot(const std::vector<const FigureSet*>& sets, Measure measure) {
   plot.x_label = "compression ratio (:1)";
   plot.y_label = is_ssim ? "SSIM gain" : "PSNR gain (dB)";
   plot.zero_line = true;
-  constexpr const char* kStyles[] = {"polygon", "image", "model", "gain"};
+  constexpr size_t kHues = 7;
   for (size_t i = 0; i < sets.size(); ++i) {
     plot.series.push_back(gain_series(*sets[i], measure));
-    plot.series.back().style = kStyles[i % 4];
+    plot.series.back().style = "hue";
+    plot.series.back().style += std::to_string(i % kHues);
   }
   plot.marks = {{25, "the paper’s 25:1"}};
   return plot;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 
 #include "base/exact_math.h"
 #include "sim/report_markup.h"
@@ -11,7 +12,7 @@ namespace pac::sim {
 namespace {
 
 // The drawing's own units; the page scales it.
-constexpr double kWidth = 520, kHeight = 388;
+constexpr double kWidth = 520;
 constexpr double kLeft = 58, kRight = 504, kTop = 44, kBottom = 318;
 
 std::string text_of(double number, int digits) {
@@ -168,7 +169,7 @@ std::string y_axis(const Plot& plot, const Axis& y) {
 
 std::string draw_marks(const Plot& plot, const Axis& x) {
   std::string svg;
-  double row = kBottom - 8;
+  double row = plot.zero_line ? kTop + 30 : kBottom - 8;
   for (const PlotMark& mark : plot.marks) {
     if (!(mark.x > x.low && mark.x < x.high)) continue;
     const double at = x.place(mark.x);
@@ -180,13 +181,30 @@ std::string draw_marks(const Plot& plot, const Axis& x) {
   return svg;
 }
 
-// A shape a series, so that color is not needed to tell them apart.
+// A shape a series, so that color is not needed to tell neighbors apart: square, circle, triangle, diamond.
 std::string marker(double x, double y, size_t series_index) {
-  const std::string cx = text_of(x, 1), cy = text_of(y, 1);
-  if (series_index % 2 == 0)
-    return std::string("<rect x=\"") + text_of(x - 3.2, 1) + "\" y=\"" + text_of(y - 3.2, 1) +
-           "\" width=\"6.4\" height=\"6.4\"/>";
-  return std::string("<circle cx=\"") + cx + "\" cy=\"" + cy + "\" r=\"3.7\"/>";
+  const auto polygon = [&](std::initializer_list<double> offsets) {
+    std::string points;
+    bool is_x = true;
+    for (const double offset : offsets) {
+      points += text_of((is_x ? x : y) + offset, 1);
+      points += is_x ? "," : " ";
+      is_x = !is_x;
+    }
+    return "<polygon points=\"" + points + "\"/>";
+  };
+  switch (series_index % 4) {
+    case 0:
+      return polygon({-3.2, -3.2, 3.2, -3.2, 3.2, 3.2, -3.2, 3.2});
+    case 1: {
+      std::string circle = "<circle cx=\"";
+      return circle + text_of(x, 1) + "\" cy=\"" + text_of(y, 1) + "\" r=\"3.7\"/>";
+    }
+    case 2:
+      return polygon({0, -4.4, 4.2, 3.4, -4.2, 3.4});
+    default:
+      return polygon({0, -4.6, 4.6, 0, 0, 4.6, -4.6, 0});
+  }
 }
 
 std::string draw_series(const Plot& plot, const Axis& x, const Axis& y) {
@@ -208,14 +226,35 @@ std::string draw_series(const Plot& plot, const Axis& x, const Axis& y) {
   return svg;
 }
 
+constexpr double kLegendTop = kBottom + 58, kLegendRow = 19;
+
+// Where each series' entry stands: left to right, in as many rows as they need.
+struct LegendPlace {
+  double x, y;
+};
+std::vector<LegendPlace> legend_places(const Plot& plot) {
+  std::vector<LegendPlace> places;
+  double x = kLeft, y = kLegendTop;
+  for (const PlotSeries& series : plot.series) {
+    const double width = 46 + 6.4 * static_cast<double>(series.name.size());
+    if (x > kLeft && x + width > kRight + 12) {
+      x = kLeft;
+      y += kLegendRow;
+    }
+    places.push_back({x, y});
+    x += width;
+  }
+  return places;
+}
+
 std::string legend(const Plot& plot) {
   std::string svg;
-  double at = kLeft;
+  const std::vector<LegendPlace> places = legend_places(plot);
   for (size_t i = 0; i < plot.series.size(); ++i) {
     const PlotSeries& series = plot.series[i];
-    svg += "<g class=\"series " + series.style + "\"><path d=\"M" + text_of(at, 0) + " 376h22\"/>" +
-           marker(at + 11, 376, i) + "</g>" + label(at + 28, 380, "tick", series.name);
-    at += 44 + 6.4 * static_cast<double>(series.name.size());
+    const auto [x, y] = places[i];
+    svg += "<g class=\"series " + series.style + "\"><path d=\"M" + text_of(x, 1) + " " + text_of(y, 1) + "h22\"/>";
+    svg += marker(x + 11, y, i) + "</g>" + label(x + 28, y + 4, "tick", series.name);
   }
   return svg;
 }
@@ -225,7 +264,8 @@ std::string legend(const Plot& plot) {
 std::string plot_svg(const Plot& plot) {
   Axis x{.from = kLeft, .to = kRight}, y{.from = kBottom, .to = kTop};
   fit_axes(plot, x, y);
-  std::string svg = std::string("<svg class=\"plot\" viewBox=\"0 0 ") + text_of(kWidth, 0) + " " + text_of(kHeight, 0) +
+  const double height = 12 + (plot.series.empty() ? kLegendTop : legend_places(plot).back().y);
+  std::string svg = std::string("<svg class=\"plot\" viewBox=\"0 0 ") + text_of(kWidth, 0) + " " + text_of(height, 0) +
                     "\" role=\"img\" aria-labelledby=\"" + plot.id + "-t " + plot.id + "-d\"><title id=\"" + plot.id +
                     "-t\">" + html_escaped(plot.title) + "</title><desc id=\"" + plot.id + "-d\">" +
                     html_escaped(plot.description) + "</desc>";

@@ -13,7 +13,7 @@ struct PlotPoint {
 
 struct PlotSeries {
   std::string name;
-  std::string style;              // CSS class: "image", "polygon", "model", "gain"
+  std::string style;              // CSS class: "image", "polygon", or "hue0" .. "hue6"
   std::vector<PlotPoint> points;  // x ascending
 };
 

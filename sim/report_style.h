@@ -6,7 +6,7 @@ namespace pac::sim {
 inline constexpr char kReportStyle[] = R"css(
 :root {
   --paper: #fdfcf8; --raised: #ffffff; --ink: #1c1b19; --soft: #5d5a54; --rule: #dcd8ce; --faint: #eeebe3;
-  --image: #b3560b; --polygon: #1a5fb0; --model: #6a4c93; --good: #2a6f3c; --bad: #a8201a; --neutral: #6b6454;
+  --image: #b3560b; --polygon: #1a5fb0; --model: #6a4c93; --good: #2a6f3c; --bad: #a8201a; --neutral: #6b6454; --teal: #0f7a80;
   --serif: "Iowan Old Style", "Palatino Linotype", Palatino, "URW Palladio L", P052, "Book Antiqua", Georgia, serif;
   --sans: system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif;
   --measure: 42rem;
@@ -14,7 +14,7 @@ inline constexpr char kReportStyle[] = R"css(
 @media (prefers-color-scheme: dark) {
   :root {
     --paper: #151617; --raised: #1d1f21; --ink: #e8e4db; --soft: #a8a399; --rule: #3a3b3d; --faint: #26282a;
-    --image: #f0a35c; --polygon: #7fb6f2; --model: #c3a6e8; --good: #7fc78f; --bad: #f08a80; --neutral: #b9b1a0;
+    --image: #f0a35c; --polygon: #7fb6f2; --model: #c3a6e8; --good: #7fc78f; --bad: #f08a80; --neutral: #b9b1a0; --teal: #62c4c9;
   }
 }
 * { box-sizing: border-box; }
@@ -153,10 +153,11 @@ svg { display: block; width: 100%; height: auto; font-family: var(--sans); }
 .plot .grid { stroke: var(--faint); } .plot .grid.faint { opacity: .55; } .plot .frame { fill: none; stroke: var(--soft); }
 .plot .mark { stroke: var(--soft); stroke-dasharray: 4 4; } .plot .zero { stroke: var(--ink); }
 .series path { fill: none; stroke: currentColor; stroke-width: 2.2; stroke-linejoin: round; }
-.series rect, .series circle { fill: currentColor; stroke: var(--paper); stroke-width: 1; }
-.series.image { color: var(--image); } .series.polygon { color: var(--polygon); } .series.model { color: var(--model); }
-.series.model path { stroke-dasharray: 7 4; } .series.gain { color: var(--good); } .series.gain2 { color: var(--model); }
-.point:hover rect, .point:hover circle { stroke: var(--ink); stroke-width: 2.5; }
+.series polygon, .series circle { fill: currentColor; stroke: var(--paper); stroke-width: 1; }
+.series.image, .series.hue1 { color: var(--image); } .series.polygon, .series.hue0 { color: var(--polygon); } .series.hue2 { color: var(--model); }
+.series.hue3 { color: var(--good); } .series.hue4 { color: var(--bad); } .series.hue5 { color: var(--teal); } .series.hue6 { color: var(--neutral); }
+.series.hue4 path, .series.hue5 path, .series.hue6 path { stroke-dasharray: 7 4; }
+.point:hover polygon, .point:hover circle { stroke: var(--ink); stroke-width: 2.5; }
 .diagram { max-width: 56rem; margin: 1.6rem 0 .5rem; }
 .diagram svg { min-width: 40rem; }
 .diagram text { fill: var(--ink); font-size: 13px; text-anchor: middle; } .diagram .small { font-size: 11px; fill: var(--soft); }
