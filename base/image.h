@@ -79,6 +79,16 @@ class Image {
       : bytes_(static_cast<size_t>(row_bytes(width)) * static_cast<size_t>(height)),
         view_{reinterpret_cast<T*>(bytes_.data()), width, height, row_bytes(width) / ptrdiff_t{sizeof(T)}} {}
 
+  // The source becomes empty.
+  Image(Image&& other) noexcept : bytes_(std::move(other.bytes_)), view_(std::exchange(other.view_, {})) {}
+  Image& operator=(Image&& other) noexcept {
+    bytes_ = std::move(other.bytes_);
+    view_ = std::exchange(other.view_, {});
+    return *this;
+  }
+  Image(const Image&) = delete;
+  Image& operator=(const Image&) = delete;
+
   // As the constructor, but refuses sizes that are negative or over `limits` instead of trusting the caller.
   static Result<Image> create(int64_t width, int64_t height, const Limits& limits = {}) {
     if (width < 0 || height < 0) return Failure{Error::bad_argument, 0, "negative image size"};
