@@ -65,6 +65,25 @@ TEST_CASE("the search finds the nearest size that any quality gives, whatever th
   }
 }
 
+TEST_CASE("a size that only a bump of the size curve has is hit exactly") {
+  const sim::Renderings pictures = renderings();
+  const ConstRgbView image = pictures.high.view();
+  const auto family = sim::ScaledTables::create(image, sim::TableFamily::annex_k, jpeg::Subsampling::yuv420);
+  REQUIRE(family.ok());
+  const std::vector<double> steps = family->step_qualities();
+  std::vector<uint64_t> sizes;
+  const size_t first = steps.size() / 4;
+  for (size_t i = 0; i < 120; ++i)
+    sizes.push_back(sim::code_at_quality(image, Content::image, steps[first + i], {})->bytes.size());
+  int bumps = 0;
+  for (size_t i = 20; i + 20 < sizes.size() && bumps < 6; ++i) {
+    if (sizes[i] <= sizes[i - 1]) continue;  // coarser tables, larger file
+    ++bumps;
+    CHECK(sim::code_at_size(image, Content::image, sizes[i], {})->bytes.size() == sizes[i]);
+  }
+  CHECK(bumps >= 3);
+}
+
 TEST_CASE("the quality that the search reports gives the same file again") {
   const sim::Renderings pictures = renderings();
   for (const auto family : {sim::TableFamily::annex_k, sim::TableFamily::adapted}) {
