@@ -169,7 +169,7 @@ std::string y_axis(const Plot& plot, const Axis& y) {
 
 std::string draw_marks(const Plot& plot, const Axis& x) {
   std::string svg;
-  double row = plot.zero_line ? kTop + 30 : kBottom - 8;
+  double row = plot.zero_line ? kTop + 14 : kBottom - 8;
   for (const PlotMark& mark : plot.marks) {
     if (!(mark.x > x.low && mark.x < x.high)) continue;
     const double at = x.place(mark.x);
