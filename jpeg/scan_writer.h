@@ -51,16 +51,23 @@ class ScanWriter {
 
  private:
   static constexpr size_t kChunk = 16384;
-  void put(uint32_t bits, int count);
-  void flush_to_byte();
-  void flush_chunk();
+  static constexpr size_t kMaxFlush = 18;  // bytes that one put or flush adds at most: 8 stuffed ones, a marker
+
+  // The state of the bit buffer, in a local copy while tokens are written.
+  struct Bits {
+    uint64_t pending = 0;  // the low n_pending bits wait for the rest of their 8 bytes; above them may be old ones
+    int n_pending = 0;     // 0..64
+    uint8_t* out = nullptr;
+  };
+  static void put(Bits& bits, uint32_t value, int count);
+  static void put_bytes(Bits& bits, uint64_t value, int n_bytes);
+  static void pad_to_byte(Bits& bits);
+  void flush_chunk(Bits& bits);
 
   uint32_t code_and_length_[kTableCount * 256] = {};
   ByteSink& sink_;
-  uint64_t pending_ = 0;  // the low n_pending_ bits wait
-  int n_pending_ = 0;     // < 8 * 5 between puts
-  size_t n_chunk_ = 0;
-  uint8_t chunk_[kChunk + 16];
+  Bits bits_;
+  uint8_t chunk_[kChunk + kMaxFlush];
 };
 
 }  // namespace pac::jpeg

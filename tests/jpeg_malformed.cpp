@@ -10,8 +10,6 @@
 namespace pac::test {
 namespace {
 
-using Part = JpegFile::Part;
-
 void require_failure(const JpegFile& file, Error error, const char* text) {
   CAPTURE(text);
   const auto result = jpeg::decode(file.bytes);

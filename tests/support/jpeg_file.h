@@ -11,6 +11,14 @@
 
 namespace pac::test {
 
+// A component in SOF and in SOS.
+struct JpegFrameComponent {
+  int id = 1, h = 1, v = 1, tq = 0;
+};
+struct JpegScanComponent {
+  int id = 1, tables = 0x00;  // Td << 4 | Ta
+};
+
 class JpegFile {
  public:
   std::vector<uint8_t> bytes;
@@ -56,13 +64,11 @@ class JpegFile {
     }
     return segment(0xDB, data);
   }
-  struct Part {
-    int id = 1, h = 1, v = 1, tq = 0;
-  };
-  JpegFile& sof(int width, int height, const std::vector<Part>& parts = {{}}, int marker = 0xC0, int precision = 8) {
+  JpegFile& sof(int width, int height, const std::vector<JpegFrameComponent>& parts = {{}}, int marker = 0xC0,
+                int precision = 8) {
     std::vector<int> data{precision,  height >> 8, height & 255,
                           width >> 8, width & 255, static_cast<int>(parts.size())};
-    for (const Part& p : parts) data.insert(data.end(), {p.id, p.h << 4 | p.v, p.tq});
+    for (const JpegFrameComponent& p : parts) data.insert(data.end(), {p.id, p.h << 4 | p.v, p.tq});
     return segment(marker, data);
   }
   JpegFile& dht(int table_class, int id, const std::array<int, 16>& counts, const std::vector<int>& symbols) {
@@ -76,12 +82,9 @@ class JpegFile {
     dht(0, id, {1, 1}, {0, 3});
     return dht(1, id, {1, 1, 1, 1}, {0x00, 0x01, 0xF0, 0xF1});
   }
-  struct ScanPart {
-    int id = 1, tables = 0x00;
-  };
-  JpegFile& sos(const std::vector<ScanPart>& parts = {{}}, int ss = 0, int se = 63, int a = 0) {
+  JpegFile& sos(const std::vector<JpegScanComponent>& parts = {{}}, int ss = 0, int se = 63, int a = 0) {
     std::vector<int> data{static_cast<int>(parts.size())};
-    for (const ScanPart& p : parts) data.insert(data.end(), {p.id, p.tables});
+    for (const JpegScanComponent& p : parts) data.insert(data.end(), {p.id, p.tables});
     data.insert(data.end(), {ss, se, a});
     return segment(0xDA, data);
   }
