@@ -25,7 +25,9 @@ Result<Bytes> read_stream(std::FILE* stream, const Limits& limits) {
 }
 
 bool write_stream(std::FILE* stream, std::span<const uint8_t> bytes) {
-  return std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() && std::fflush(stream) == 0;
+  // An empty span may hold a null pointer, which fwrite must not be given.
+  const bool written = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+  return written && std::fflush(stream) == 0;
 }
 
 // A device or pipe such as /dev/null is written to: a rename would put a file in its place.
