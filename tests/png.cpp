@@ -96,7 +96,7 @@ TEST_CASE("every color type and depth, interlaced or not, decodes to its samples
         CAPTURE(kind.color_type);
         CAPTURE(kind.bit_depth);
         CAPTURE(interlaced);
-        CAPTURE(width);
+        CAPTURE(spec.width);
         const auto image = decode_png_rgba(png_file(spec));
         REQUIRE_MESSAGE(image.ok(), image.failure().text);
         require_pixels(spec, *image);
