@@ -73,7 +73,7 @@ void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights
     for (int level = rounded; level >= 1 && level >= rounded - 1; --level) {
       const double error = magnitude - level * weights.divisor[k];
       const double distortion = weights.weight[k] * error * error;
-      const int size = std::bit_width(static_cast<uint32_t>(level));
+      const int size = static_cast<int>(std::bit_width(static_cast<uint32_t>(level)));
       const int oldest = n_stages > kMaxLookBack ? n_stages - kMaxLookBack : 0;
       for (int j = n_stages - 1; j >= oldest - 1; --j) {
         if (j == oldest - 1 && oldest > 0) break;  // the block's start is too far back

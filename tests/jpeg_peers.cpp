@@ -130,9 +130,10 @@ TEST_CASE("we decode cjpeg's files as djpeg does, for all sampling factors, odd 
     run(script);
     for (size_t i = 0; i < std::size(kVariants); ++i) {
       const char* const variant = kVariants[i];
+      const int w = width, h = height;  // CAPTURE's lambda may not name a structured binding
       CAPTURE(variant);
-      CAPTURE(width);
-      CAPTURE(height);
+      CAPTURE(w);
+      CAPTURE(h);
       const auto decoded = jpeg::decode(read_bytes(dir.file(std::to_string(i) + ".jpg")));
       REQUIRE(decoded.ok());
       REQUIRE(max_difference(decoded->view(), read_picture(dir.file(std::to_string(i) + ".pnm")).view()) <= 1);
