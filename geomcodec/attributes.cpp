@@ -51,10 +51,31 @@ uint32_t sign_of(int32_t value) {
   return value == 0 ? 0 : value > 0 ? 1 : 2;
 }
 
-// What is kept of each coded vertex for the contexts of those after it.
+// What is kept of each coded vertex for the contexts of those after it: classes of its residuals.
 struct Memory {
   uint8_t position_class[3] = {};
-  uint8_t color_class = 0;
+  uint8_t green_class = 0;
+};
+
+// How red and blue residuals go with green's: running sums that forget by 1/128 a vertex, in 1/64.
+class Covariance {
+ public:
+  // What a channel misses where green misses by `green`, in levels; the ratio is kept within -2..2.
+  int32_t expected(int channel, int32_t green) const {
+    const int64_t ratio = std::clamp<int64_t>(with_green_[channel] * 256 / green_green_, -512, 512);
+    return divide_to_nearest(static_cast<int32_t>(ratio) * green, 256);
+  }
+  void learn_green(int32_t green) {
+    green_green_ = std::max<int64_t>(green_green_ + int64_t{64} * green * green - (green_green_ >> 7), 32);
+  }
+  // missed: by how much the channel's spatial prediction missed, the share that green foretold included.
+  void learn(int channel, int32_t missed, int32_t green) {
+    with_green_[channel] += int64_t{64} * missed * green - (with_green_[channel] >> 7);
+  }
+
+ private:
+  int64_t with_green_[3] = {1024, 0, 1024};  // ratio 1 at first
+  int64_t green_green_ = 1024;
 };
 
 template <class Coder>
@@ -79,6 +100,9 @@ class AttributeCoder {
   };
   bool code_position(uint32_t v, const Stencil& stencil, std::vector<QuantizedVertex>& vertices);
   bool code_color(uint32_t v, const Stencil& stencil, std::vector<QuantizedVertex>& vertices);
+  // Mean of what `class_at(neighbor)` tells; without neighbors that of the vertex before.
+  template <class ClassAt>
+  static uint32_t mean_class(uint32_t v, const Stencil& stencil, ClassAt class_at);
 
   const Topology& topology_;
   const Stencils stencils_;
@@ -88,9 +112,38 @@ class AttributeCoder {
   const bool constant_color_;
   std::vector<Models> models_;  // one element: too large for the stack
   std::vector<Memory> memory_;
-  // Running covariance of green's residuals with red's and blue's, and green's variance.
-  int64_t red_green_ = 1 << 10, blue_green_ = 1 << 10, green_green_ = 1 << 10;
+  Covariance covariance_;
 };
+
+Basis basis_of(const Stencil& stencil) {
+  if (stencil.n_parallelograms > 0) return stencil.n_parallelograms > 1 ? kManyParallelograms : kOneParallelogram;
+  return stencil.n_neighbors > 0 ? kNeighbors : kPrevious;
+}
+
+// `value(vertex)` is one coordinate or channel; sums stay below 12 * 3 * 65535 * 64 < 2^31.
+template <class Value>
+int32_t parallelogram_sum(const Stencil& stencil, Value value) {
+  int32_t sum = 0;
+  for (int i = 0; i < stencil.n_parallelograms; ++i) {
+    const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    sum += value(p.side_1) + value(p.side_2) - value(p.opposite);
+  }
+  return sum;
+}
+template <class Value>
+int32_t neighbor_sum(const Stencil& stencil, Value value) {
+  int32_t sum = 0;
+  for (int i = 0; i < stencil.n_neighbors; ++i) sum += value(stencil.neighbor[i]);
+  return sum;
+}
+
+template <class Coder>
+template <class ClassAt>
+uint32_t AttributeCoder<Coder>::mean_class(uint32_t v, const Stencil& stencil, ClassAt class_at) {
+  if (stencil.n_neighbors > 0)
+    return static_cast<uint32_t>(divide_to_nearest(neighbor_sum(stencil, class_at), stencil.n_neighbors));
+  return v > 0 ? static_cast<uint32_t>(class_at(v - 1)) : 0;
+}
 
 template <class Coder>
 bool AttributeCoder<Coder>::code(uint32_t v, std::vector<QuantizedVertex>& vertices) {
@@ -101,105 +154,66 @@ bool AttributeCoder<Coder>::code(uint32_t v, std::vector<QuantizedVertex>& verti
 
 template <class Coder>
 bool AttributeCoder<Coder>::code_position(uint32_t v, const Stencil& stencil, std::vector<QuantizedVertex>& vertices) {
-  const Basis basis = stencil.n_parallelograms > 1    ? kManyParallelograms
-                      : stencil.n_parallelograms == 1 ? kOneParallelogram
-                      : stencil.n_neighbors > 0       ? kNeighbors
-                                                      : kPrevious;
-  uint32_t other = 0;
+  const Basis basis = basis_of(stencil);
+  uint32_t largest_class = 0;  // of the axes before
   for (int axis = 0; axis < 3; ++axis) {
-    int32_t prediction = v > 0 ? vertices[v - 1].position[axis] : 0;
-    if (stencil.n_parallelograms > 0) {
-      int32_t sum = 0;
-      for (int i = 0; i < stencil.n_parallelograms; ++i) {
-        const Stencil::Parallelogram& p = stencil.parallelogram[i];
-        sum +=
-            vertices[p.side_1].position[axis] + vertices[p.side_2].position[axis] - vertices[p.opposite].position[axis];
-      }
-      prediction = divide_to_nearest(sum, stencil.n_parallelograms);
-    } else if (stencil.n_neighbors > 0) {
-      int32_t sum = 0;
-      for (int i = 0; i < stencil.n_neighbors; ++i) sum += vertices[stencil.neighbor[i]].position[axis];
-      prediction = divide_to_nearest(sum, stencil.n_neighbors);
-    }
+    const auto coordinate = [&](uint32_t vertex) { return int32_t{vertices[vertex].position[axis]}; };
+    int32_t prediction = 0;
+    if (stencil.n_parallelograms > 0)
+      prediction = divide_to_nearest(parallelogram_sum(stencil, coordinate), stencil.n_parallelograms);
+    else if (stencil.n_neighbors > 0)
+      prediction = divide_to_nearest(neighbor_sum(stencil, coordinate), stencil.n_neighbors);
+    else if (v > 0)
+      prediction = coordinate(v - 1);
     prediction = std::clamp(prediction, 0, highest_);
-    int32_t classes = 0;
-    for (int i = 0; i < stencil.n_neighbors; ++i) classes += memory_[stencil.neighbor[i]].position_class[axis];
-    const uint32_t scale = stencil.n_neighbors > 0
-                               ? static_cast<uint32_t>(divide_to_nearest(classes, stencil.n_neighbors))
-                           : v > 0 ? memory_[v - 1].position_class[axis]
-                                   : 0;
-    const int32_t residual = code_residual(positions_, models_[0].position[axis], basis, scale, other, 0,
-                                           vertices[v].position[axis] - prediction);
+
+    const uint32_t scale =
+        mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex].position_class[axis]}; });
+    const int32_t residual = code_residual(positions_, models_[0].position[axis], basis, scale, largest_class, 0,
+                                           coordinate(v) - prediction);
     const int32_t value = prediction + residual;
     if (value < 0 || value > highest_) return false;
     vertices[v].position[axis] = static_cast<uint16_t>(value);
     memory_[v].position_class[axis] = static_cast<uint8_t>(class_of(residual));
-    other = axis == 0 ? class_of(residual) : std::max(other, class_of(residual));
+    largest_class = std::max(largest_class, class_of(residual));
   }
   return true;
+}
+
+// The neighbors' mean, moved by 3/4 of the way to the parallelograms' mean.
+template <class Value>
+int32_t predict_channel(const Stencil& stencil, Value value) {
+  const int32_t mean = divide_to_nearest(64 * neighbor_sum(stencil, value), stencil.n_neighbors);
+  if (stencil.n_parallelograms == 0) return divide_to_nearest(mean, 64);
+  const int32_t linear = divide_to_nearest(64 * parallelogram_sum(stencil, value), stencil.n_parallelograms);
+  return divide_to_nearest(mean + divide_to_nearest(3 * (linear - mean), 4), 64);
 }
 
 // Green first; red and blue are predicted to miss as green did, in the ratio that held so far; alpha alone.
 template <class Coder>
 bool AttributeCoder<Coder>::code_color(uint32_t v, const Stencil& stencil, std::vector<QuantizedVertex>& vertices) {
-  const Basis basis = stencil.n_parallelograms > 1    ? kManyParallelograms
-                      : stencil.n_parallelograms == 1 ? kOneParallelogram
-                      : stencil.n_neighbors > 0       ? kNeighbors
-                                                      : kPrevious;
-  constexpr int kOrder[4] = {1, 0, 2, 3};
-  int32_t green = 0;
-  uint32_t other = 0, sign_context = 0;
-  uint32_t scale = v > 0 ? memory_[v - 1].color_class : 0;
-  if (stencil.n_neighbors > 0) {
-    int32_t classes = 0;
-    for (int i = 0; i < stencil.n_neighbors; ++i) classes += memory_[stencil.neighbor[i]].color_class;
-    scale = static_cast<uint32_t>(divide_to_nearest(classes, stencil.n_neighbors));
-  }
-  for (const int channel : kOrder) {
-    int32_t prediction = v > 0 ? vertices[v - 1].color[channel] : 255;
-    if (stencil.n_neighbors > 0) {
-      int32_t sum = 0;
-      for (int i = 0; i < stencil.n_neighbors; ++i) sum += vertices[stencil.neighbor[i]].color[channel];
-      // In 1/64 of a level: neighbors' mean + a share of where the parallelograms' mean lies.
-      int32_t mean = divide_to_nearest(64 * sum, stencil.n_neighbors);
-      if (stencil.n_parallelograms > 0) {
-        int32_t linear = 0;
-        for (int i = 0; i < stencil.n_parallelograms; ++i) {
-          const Stencil::Parallelogram& p = stencil.parallelogram[i];
-          linear += vertices[p.side_1].color[channel] + vertices[p.side_2].color[channel] -
-                    vertices[p.opposite].color[channel];
-        }
-        linear = divide_to_nearest(64 * linear, stencil.n_parallelograms);
-        mean += divide_to_nearest(linear - mean, 2);
-      }
-      prediction = divide_to_nearest(mean, 64);
-    }
-    if (channel == 0 || channel == 2) {
-      const int64_t covariance = channel == 0 ? red_green_ : blue_green_;
-      const int64_t ratio = std::clamp<int64_t>(covariance * 256 / green_green_, -512, 512);
-      prediction += divide_to_nearest(static_cast<int32_t>(ratio) * green, 256);
-    }
-    const int32_t unclamped = prediction;
-    prediction = std::clamp(prediction, 0, 255);
-    const int32_t residual = code_residual(colors_, models_[0].color[channel], basis, scale, other, sign_context,
-                                           vertices[v].color[channel] - prediction);
+  const Basis basis = basis_of(stencil);
+  const uint32_t scale = mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex].green_class}; });
+  int32_t green = 0;  // its residual
+  uint32_t largest_class = 0, sign_context = 0;
+  for (const int channel : {1, 0, 2, 3}) {
+    const auto level = [&](uint32_t vertex) { return int32_t{vertices[vertex].color[channel]}; };
+    const int32_t spatial = stencil.n_neighbors > 0 ? predict_channel(stencil, level) : v > 0 ? level(v - 1) : 255;
+    const bool follows_green = channel == 0 || channel == 2;
+    const int32_t prediction = std::clamp(spatial + (follows_green ? covariance_.expected(channel, green) : 0), 0, 255);
+    const int32_t residual = code_residual(colors_, models_[0].color[channel], basis, scale, largest_class,
+                                           sign_context, level(v) - prediction);
     const int32_t value = prediction + residual;
     if (value < 0 || value > 255) return false;
     vertices[v].color[channel] = static_cast<uint8_t>(value);
-    if (channel == 1) {
+    largest_class = std::max(largest_class, class_of(residual));
+    sign_context = sign_of(residual);
+    if (follows_green) {
+      covariance_.learn(channel, value - spatial, green);
+    } else if (channel == 1) {
       green = residual;
-      other = class_of(residual);
-      sign_context = sign_of(residual);
-      memory_[v].color_class = static_cast<uint8_t>(class_of(residual));
-      green_green_ += int64_t{green} * green * 64 - (green_green_ >> 5);
-      if (green_green_ < 32) green_green_ = 32;
-    } else if (channel != 3) {
-      int64_t& covariance = channel == 0 ? red_green_ : blue_green_;
-      const int64_t ratio = std::clamp<int64_t>(covariance * 256 / green_green_, -512, 512);
-      const int32_t missed = value - (unclamped - divide_to_nearest(static_cast<int32_t>(ratio) * green, 256));
-      covariance += int64_t{missed} * green * 64 - (covariance >> 5);
-      other = std::max(other, class_of(residual));
-      sign_context = sign_of(residual);
+      memory_[v].green_class = static_cast<uint8_t>(class_of(residual));
+      covariance_.learn_green(green);
     }
   }
   return true;

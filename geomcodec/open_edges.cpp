@@ -2,11 +2,19 @@
 
 namespace pac::geomcodec {
 
-// An open edge to -> from, or kNone.
-uint32_t OpenEdges::find_reverse(uint32_t from, uint32_t to) const {
-  uint32_t corner = out_head_[to];
-  for (int i = 0; i < kSearch && corner != kNone; ++i, corner = out_next_[corner])
-    if (is_open(corner) && end_of(corner) == from) return corner;
+// An open edge to -> from, or kNone. Edges that were closed leave the list on the way, so that only open ones count.
+uint32_t OpenEdges::find_reverse(uint32_t from, uint32_t to) {
+  uint32_t* link = &out_head_[to];
+  for (int i = 0; i < kSearch && *link != kNone;) {
+    const uint32_t corner = *link;
+    if (!is_open(corner)) {
+      *link = out_next_[corner];
+      continue;
+    }
+    if (end_of(corner) == from) return corner;
+    link = &out_next_[corner];
+    ++i;
+  }
   return kNone;
 }
 

@@ -1,5 +1,5 @@
 // The boundary of the part of a mesh that is coded so far: directed edges that one face uses and that a second face may
-// still use the other way round. Every operation takes constant time whatever the mesh: searches look at kSearch edges.
+// still use the other way round. Operations take constant time on average whatever the mesh: searches look at kSearch open edges.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +51,7 @@ class OpenEdges {
     while (head[vertex] != kNone && !is_open(head[vertex])) head[vertex] = next[head[vertex]];
     return head[vertex];
   }
-  uint32_t find_reverse(uint32_t from, uint32_t to) const;
+  uint32_t find_reverse(uint32_t from, uint32_t to);
 
   Topology& topology_;
   std::vector<uint32_t> out_head_, in_head_;  // per vertex: newest corner whose edge leaves (enters) it, or kNone

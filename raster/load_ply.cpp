@@ -301,6 +301,10 @@ void Loader::make_normals(Mesh& mesh) const {
 }
 
 Result<void> Loader::run(LoadedScene& loaded) {
+  const bool has_faces = std::any_of(header_.elements.begin(), header_.elements.end(), [](const PlyElement& element) {
+    return element.name == "face" && element.count > 0;
+  });
+  if (!has_faces) return Failure{Error::unsupported, 0, "no faces: point clouds are not drawn"};
   uint64_t least_bytes = 0;
   for (const PlyElement& element : header_.elements) {
     const uint64_t each = element.least_bytes(header_.format);

@@ -108,9 +108,7 @@ Result<PlyHeader> parse_ply_header(std::span<const uint8_t> bytes) {
       fault = header.elements.empty() ? "malformed header line" : add_property(rest, header.elements.back());
     } else if (keyword == "comment") {
       if (take_word(rest) == "TextureFile") header.texture_name = std::string(trimmed(rest));
-    } else if (keyword != "obj_info" && !keyword.empty()) {
-      fault = "malformed header line";
-    }
+    }  // else obj_info, or something that no reader needs: some writers forget "comment"
     if (fault != nullptr) return Failure{Error::corrupt, lines.offset(), fault};
   }
   return Failure{Error::truncated, bytes.size(), "header ends too early"};

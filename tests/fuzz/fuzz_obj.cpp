@@ -1,0 +1,30 @@
+// OBJ, with the same bytes as MTL and as texture names' source: whatever they hold, a scene that validates or a
+// Failure.
+#include "base/mesh.h"
+#include "raster/load_mtl.h"
+#include "raster/load_obj.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  const std::span<const uint8_t> bytes(data, size);
+  pac::raster::AssetSource assets;
+  assets.read = [&](const std::string& name) -> pac::Result<pac::Bytes> {
+    if (name.size() % 2 == 1) return pac::Failure{pac::Error::io, 0, "no such file"};
+    return pac::Bytes(data, data + size);
+  };
+  assets.decode_image = [](std::span<const uint8_t> image) -> pac::Result<pac::RgbaImage> {
+    if (image.size() % 3 == 0) return pac::Failure{pac::Error::corrupt, 0, "not an image"};
+    return pac::RgbaImage(3, 5);
+  };
+  pac::Limits limits;
+  limits.max_triangles = 1 << 16;
+  const auto loaded = pac::raster::load_obj(bytes, assets, limits);
+  if (loaded.ok()) {
+    const auto& scene = loaded->scene;
+    PAC_ASSERT(validate(scene.mesh, static_cast<uint32_t>(scene.materials.size()), limits).ok());
+    for (const pac::raster::Material& material : scene.materials)
+      PAC_ASSERT(material.texture < static_cast<int32_t>(scene.textures.size()));
+  } else {
+    PAC_ASSERT(loaded.failure().byte_offset <= size);
+  }
+  return 0;
+}
