@@ -82,6 +82,7 @@ Camera camera_at(const Cloud& cloud, const Axes& axes, double distance, float as
     eye[axis] = static_cast<float>(cloud.center.v[axis] + distance * axes.back.v[axis]);
     up[axis] = static_cast<float>(axes.up.v[axis]);
   }
+  // Near and far enclose the bounding sphere.
   const double near_plane = std::max(distance - 1.05 * radius, 0.005 * distance);
   return make_camera(eye, target, up, static_cast<float>(kFovY), aspect, static_cast<float>(near_plane),
                      static_cast<float>(distance + 1.05 * radius));

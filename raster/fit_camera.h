@@ -11,7 +11,7 @@ Camera fit_camera(const Scene& scene, float aspect);
 
 // One step of a turn around the model: frame 0 looks from where fit_camera() does, kOrbitFrames make a full turn, all
 // at the one distance from which every frame fits.
-inline constexpr int kOrbitFrames = 180;
+inline constexpr int kOrbitFrames = 120;
 Camera orbit_camera(const Scene& scene, float aspect, int frame);
 
 // Replaces the scene's lights: a warm key light from above left, a cool fill light from the right, a rim light from

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "base/exact_math.h"
+#include "raster/fit_camera.h"
 
 namespace pac::sim {
 
@@ -115,26 +115,7 @@ SceneSet scene_set_from(raster::Scene scene) {
 }
 
 raster::Camera fit_camera(const raster::Scene& scene, int frame, float aspect) {
-  const Box box = bounding_box(scene.mesh);
-  double center[3], squared = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    center[axis] = 0.5 * (box.low[axis] + box.high[axis]);
-    const double half = 0.5 * (box.high[axis] - box.low[axis]);
-    squared += half * half;
-  }
-  const double radius = squared > 0 && squared < 1e60 ? std::sqrt(squared) : 1.0;
-  const double fov = kPi / 5;
-  // The sphere must fit the narrower of the two angles of view.
-  const double narrow = std::min(1.0, double{aspect});
-  const double distance = 1.05 * radius / (exact_sin(fov / 2) * narrow);
-  const double azimuth = kPi / 6 + frame * (kPi / 60), elevation = kPi / 9;
-  const glm::vec3 target(static_cast<float>(center[0]), static_cast<float>(center[1]), static_cast<float>(center[2]));
-  const glm::vec3 eye(static_cast<float>(center[0] + distance * exact_cos(elevation) * exact_sin(azimuth)),
-                      static_cast<float>(center[1] + distance * exact_sin(elevation)),
-                      static_cast<float>(center[2] + distance * exact_cos(elevation) * exact_cos(azimuth)));
-  return raster::make_camera(eye, target, glm::vec3(0, 1, 0), static_cast<float>(fov), aspect,
-                             static_cast<float>(distance - 1.02 * radius),
-                             static_cast<float>(distance + 1.02 * radius));
+  return raster::orbit_camera(scene, aspect, frame);
 }
 
 bool add_coarse_model(SceneSet& scene, int cells) {

@@ -11,8 +11,7 @@ namespace pac::sim {
 // without lights gets two directional ones (key and fill) so that lit materials have shape.
 SceneSet scene_set_from(raster::Scene scene);
 
-// A camera that sees all of the mesh: three-quarter view from above, orbiting by 3 degrees a frame; frame 0 is the
-// still. Near and far planes enclose the bounding sphere. Works for empty and degenerate meshes (unit sphere).
+// The camera for frame `frame` of a turn around the model (raster/fit_camera.h); frame 0 is the still.
 raster::Camera fit_camera(const raster::Scene& scene, int frame, float aspect);
 
 // Fills scene.coarse by vertex clustering [Rossignac and Borrel 1993]: vertices in the same cell of a cubic grid of
