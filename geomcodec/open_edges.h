@@ -1,5 +1,6 @@
 // The boundary of the part of a mesh that is coded so far: directed edges that one face uses and that a second face may
-// still use the other way round. Operations take constant time on average whatever the mesh: searches look at kSearch open edges.
+// still use the other way round. Operations take constant time on average whatever the mesh: searches look at kSearch
+// open edges.
 #pragma once
 
 #include <cstddef>

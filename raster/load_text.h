@@ -9,8 +9,8 @@
 
 namespace pac::raster {
 
-// Yields a file's lines: ended by LF, CR LF, CR or the end of the file. Keeps a pointer to the caller's bytes; each line
-// is valid until the next one is read.
+// Yields a file's lines: ended by LF, CR LF, CR or the end of the file. Keeps a pointer to the caller's bytes; each
+// line is valid until the next one is read.
 class LineReader {
  public:
   // joins: lines that end in a backslash go on in the next one, unless they are '#' comments.
