@@ -1,0 +1,248 @@
+// Mesa's llvmpipe and this rasterizer on the same scenes, cameras and sizes, frames interleaved in one run. CPU time of
+// the process, the smallest of many frames. A frame is clear, draw and finish into an off-screen buffer, without
+// reading back.
+//
+//   g++ -std=c++20 -O2 -ffp-contract=off -I. bench/peers/llvmpipe_peer.cpp -o llvmpipe_peer
+//     build/release/libpac_raster.a build/release/libpac_base.a -lOSMesa -lpthread
+//   ./llvmpipe_peer [threads [part of a row's name]]        (Debian: libosmesa6-dev)
+//
+// Supersampling in GL is a rendering at 4 times the width and height without the box filter, which favors the peer.
+#define GL_GLEXT_PROTOTYPES
+#include <GL/osmesa.h>
+// After it:
+#include <GL/glext.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "raster/renderer.h"
+#include "raster/triangulate.h"
+#include "tests/support/raster_scenes.h"
+
+namespace {
+
+using namespace pac;
+using namespace pac::raster;
+
+struct Timing {
+  double cpu_ms = 1e9, wall_ms = 1e9;
+};
+
+template <class Frame>
+void time_frame(Timing& best, Frame&& frame) {
+  const auto wall = std::chrono::steady_clock::now();
+  const clock_t cpu = clock();
+  frame();
+  best.cpu_ms = std::min(best.cpu_ms, 1e3 * static_cast<double>(clock() - cpu) / CLOCKS_PER_SEC);
+  best.wall_ms = std::min(best.wall_ms,
+                          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - wall).count());
+}
+
+// A scene in GL buffers: one index range a material.
+class GlScene {
+ public:
+  GlScene(const Scene& scene, const Camera& camera, bool textured, bool lit) : textured_(textured), lit_(lit) {
+    std::copy_n(&camera.clip_from_world[0][0], 16, matrix_);
+    std::copy_n(&camera.eye[0], 3, eye_);
+    std::vector<std::vector<uint32_t>> by_material(scene.materials.size());
+    PolygonCutter cutter;
+    for (const Face& face : scene.mesh.faces)
+      for (const CornerTriple& t : cutter.cut(scene.mesh, face))
+        for (const uint32_t corner : t.corner)
+          by_material[face.material].push_back(scene.mesh.indices[face.first + corner]);
+    std::vector<uint32_t> indices;
+    for (const auto& part : by_material) {
+      ranges_.push_back({indices.size(), part.size()});
+      indices.insert(indices.end(), part.begin(), part.end());
+    }
+    GLuint buffers[2];
+    glGenBuffers(2, buffers);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers[0]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(scene.mesh.vertices.size() * sizeof(Vertex)),
+                 scene.mesh.vertices.data(), GL_STATIC_DRAW);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * 4), indices.data(), GL_STATIC_DRAW);
+    vertices_ = buffers[0];
+    indices_ = buffers[1];
+    for (const Material& m : scene.materials) textures_.push_back(m.texture >= 0 ? upload(scene, m) : 0);
+    if (lit) set_lights(scene);
+  }
+
+  void draw() const {
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glMatrixMode(GL_PROJECTION);
+    glLoadMatrixf(matrix_);
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+    glBindBuffer(GL_ARRAY_BUFFER, vertices_);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+    glEnableClientState(GL_VERTEX_ARRAY);
+    glEnableClientState(GL_COLOR_ARRAY);
+    const auto at = [](size_t offset) { return reinterpret_cast<const void*>(offset); };
+    glVertexPointer(3, GL_FLOAT, sizeof(Vertex), at(offsetof(Vertex, position)));
+    glColorPointer(4, GL_UNSIGNED_BYTE, sizeof(Vertex), at(offsetof(Vertex, color)));
+    if (textured_) {
+      glEnable(GL_TEXTURE_2D);
+      glEnableClientState(GL_TEXTURE_COORD_ARRAY);
+      glTexCoordPointer(2, GL_FLOAT, sizeof(Vertex), at(offsetof(Vertex, texcoord)));
+    } else {
+      glDisable(GL_TEXTURE_2D);
+      glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    }
+    if (lit_) {
+      glEnable(GL_LIGHTING);
+      glEnable(GL_CULL_FACE);
+      glEnableClientState(GL_NORMAL_ARRAY);
+      glNormalPointer(GL_FLOAT, sizeof(Vertex), at(offsetof(Vertex, normal)));
+    } else {
+      glDisable(GL_LIGHTING);
+      glDisable(GL_CULL_FACE);
+      glDisableClientState(GL_NORMAL_ARRAY);
+    }
+    for (size_t i = 0; i < ranges_.size(); ++i) {
+      if (ranges_[i].second == 0) continue;
+      if (textured_) glBindTexture(GL_TEXTURE_2D, textures_[i]);
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(ranges_[i].second), GL_UNSIGNED_INT, at(4 * ranges_[i].first));
+    }
+    glFinish();
+  }
+
+ private:
+  static GLuint upload(const Scene& scene, const Material& m) {
+    const Texture& texture = scene.textures[static_cast<size_t>(m.texture)];
+    GLuint name;
+    glGenTextures(1, &name);
+    glBindTexture(GL_TEXTURE_2D, name);
+    for (size_t i = 0; i < texture.levels.size(); ++i) {
+      const ConstRgbaView level = texture.level(i);
+      glPixelStorei(GL_UNPACK_ROW_LENGTH, static_cast<GLint>(level.stride / 4));
+      glTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(i), GL_RGBA8, level.width, level.height, 0, GL_RGBA,
+                   GL_UNSIGNED_BYTE, level.data);
+    }
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    return name;
+  }
+  void set_lights(const Scene& scene) {
+    glMatrixMode(GL_MODELVIEW);
+    glLoadIdentity();
+    const Material& m = scene.materials[0];
+    const GLfloat specular[4] = {m.specular.x, m.specular.y, m.specular.z, 1}, zero[4] = {0, 0, 0, 1};
+    glMaterialfv(GL_FRONT, GL_SPECULAR, specular);
+    glMaterialf(GL_FRONT, GL_SHININESS, static_cast<GLfloat>(m.shininess));
+    glColorMaterial(GL_FRONT, GL_AMBIENT_AND_DIFFUSE);
+    glEnable(GL_COLOR_MATERIAL);
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+      const Light& light = scene.lights[i];
+      const auto number = static_cast<GLenum>(GL_LIGHT0 + i);
+      const bool point = light.kind == Light::Kind::point;
+      const glm::vec3 v = point ? light.position : -light.direction;
+      const GLfloat where[4] = {v.x, v.y, v.z, point ? 1.0f : 0.0f};
+      const GLfloat color[4] = {light.color.x, light.color.y, light.color.z, 1};
+      glLightfv(number, GL_POSITION, where);
+      glLightfv(number, GL_DIFFUSE, color);
+      glLightfv(number, GL_SPECULAR, color);
+      glLightfv(number, GL_AMBIENT, zero);
+      glEnable(number);
+    }
+  }
+
+  bool textured_, lit_;
+  GLfloat matrix_[16], eye_[3];
+  GLuint vertices_ = 0, indices_ = 0;
+  std::vector<std::pair<size_t, size_t>> ranges_;
+  std::vector<GLuint> textures_;
+};
+
+void bind_framebuffer(int width, int height) {
+  GLuint buffers[2], frame;
+  glGenRenderbuffers(2, buffers);
+  glGenFramebuffers(1, &frame);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame);
+  const GLenum formats[2] = {GL_RGBA8, GL_DEPTH_COMPONENT24}, places[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+  for (int i = 0; i < 2; ++i) {
+    glBindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
+    glRenderbufferStorage(GL_RENDERBUFFER, formats[i], width, height);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers[i]);
+  }
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) std::puts("framebuffer incomplete");
+  glViewport(0, 0, width, height);
+  glEnable(GL_DEPTH_TEST);
+}
+
+struct Row {
+  const char* name;
+  const char* scene;
+  Shading shading;
+  bool texture;
+  int samples;
+  int width, height;
+};
+
+void compare(const Row& row, int threads) {
+  const bool room = std::string(row.scene) == "room";
+  Scene scene = room                              ? test_scenes::room()
+                : std::string(row.scene) == "pin" ? test_scenes::bumpy_pin(194, 194)
+                                                  : test_scenes::bumpy_pin(39, 39);
+  const float aspect = static_cast<float>(row.width) / static_cast<float>(row.height);
+  const Camera camera = room ? test_scenes::room_camera(aspect) : test_scenes::pin_camera(aspect);
+  RendererOptions options;
+  options.threads = threads;
+  auto renderer = Renderer::create(row.width, row.height, options);
+  RgbImage image(row.width, row.height);
+  RenderQuality quality;
+  quality.shading = row.shading;
+  quality.texture = row.texture;
+  quality.samples = row.samples;
+  quality.cull_back_faces = true;
+  const int scale = row.samples == 16 ? 4 : row.samples == 4 ? 2 : 1;
+  bind_framebuffer(scale * row.width, scale * row.height);
+  const GlScene gl(scene, camera, row.texture, !room);
+  Timing peer, ours;
+  for (int i = 0; i < 2; ++i) gl.draw();
+  const clock_t start = clock();
+  for (int i = 0; i < 8 || (i < 60 && clock() - start < CLOCKS_PER_SEC); ++i) {
+    time_frame(peer, [&] { gl.draw(); });
+    time_frame(ours, [&] { (void)renderer->render(scene, camera, quality, {image.view(), {}, {}}); });
+  }
+  std::printf("%-28s %9.2f %9.2f %8.2fx %11.2f %9.2f\n", row.name, peer.cpu_ms, ours.cpu_ms, ours.cpu_ms / peer.cpu_ms,
+              peer.wall_ms, ours.wall_ms);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int threads = argc > 1 ? std::atoi(argv[1]) : 1;
+  setenv("LP_NUM_THREADS", threads > 1 ? std::to_string(threads).c_str() : "0", 1);
+  const OSMesaContext context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 0, 0, nullptr);
+  std::vector<uint8_t> dummy(64 * 64 * 4);
+  if (context == nullptr || !OSMesaMakeCurrent(context, dummy.data(), GL_UNSIGNED_BYTE, 64, 64)) {
+    std::puts("no OSMesa context");
+    return 1;
+  }
+  std::printf("%s, %d thread(s)\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), threads);
+  std::printf("%-28s %9s %9s %9s %11s %9s\n", "", "peer cpu", "ours cpu", "ratio", "peer wall", "ours wall");
+  constexpr Shading kGouraud = Shading::gouraud;
+  const Row rows[] = {
+      {"room Gouraud 512", "room", kGouraud, false, 1, 512, 512},
+      {"room trilinear 512", "room", kGouraud, true, 1, 512, 512},
+      {"room Gouraud 4x4 512", "room", kGouraud, false, 16, 512, 512},
+      {"room trilinear 4x4 512", "room", kGouraud, true, 16, 512, 512},
+      {"pin 75k Gouraud 512", "pin", kGouraud, false, 1, 512, 512},
+      {"pin 75k Gouraud 4x4 512", "pin", kGouraud, false, 16, 512, 512},
+      {"pin 3k Gouraud 512", "pin3k", kGouraud, false, 1, 512, 512},
+      {"room Gouraud 1080", "room", kGouraud, false, 1, 1920, 1080},
+      {"room trilinear 1080", "room", kGouraud, true, 1, 1920, 1080},
+      {"pin 75k Gouraud 1080", "pin", kGouraud, false, 1, 1920, 1080},
+  };
+  const char* filter = argc > 2 ? argv[2] : "";
+  for (const Row& row : rows)
+    if (std::string(row.name).find(filter) != std::string::npos) compare(row, threads);
+  OSMesaDestroyContext(context);
+}
