@@ -21,8 +21,8 @@ class TextScanner {
   bool ok() const { return ok_; }
   const Failure& failure() const { return failure_; }
   bool at_end() const { return at_ >= bytes_.size(); }
-  // The next byte, or -1 at the end.
-  int peek() const { return at_end() ? -1 : bytes_[at_]; }
+  // The next byte, or -1 at the end and after a failure: a loop that reads while peek() fits always ends.
+  int peek() const { return !ok_ || at_end() ? -1 : bytes_[at_]; }
   int next() {
     const int c = peek();
     if (c >= 0 && ok_) ++at_;

@@ -48,7 +48,7 @@ void read_chroma(TextScanner& text, std::span<const uint8_t> bytes, Y4mHeader& h
     return end == bytes.size() ? text.fail(Error::truncated, "Y4M header ends early")
                                : text.fail(Error::unsupported, "Y4M chroma is not 8-bit 4:2:0");
   }
-  while (text.offset() < end) text.next();
+  while (text.ok() && text.offset() < end) text.next();
 }
 
 // One parameter, its tag letter already read.

@@ -184,6 +184,7 @@ TEST_CASE("PFM: prefixes, wrong headers and sizes over the limit are refused") {
   CHECK(error_of("Pf\n0 1\n-1\n") == Error::corrupt);
   CHECK(error_of("Pf\n1 1\n0.0\n1234") == Error::corrupt);
   CHECK(error_of("Pf\n1 1\nx\n1234") == Error::corrupt);
+  CHECK(error_of("Pf22346.1") == Error::corrupt);  // a scale after a failure: once read for ever
   CHECK(error_of("Pf\n1 1\n1.0x1234") == Error::corrupt);
   Limits limits;
   limits.max_pixels = 3;
