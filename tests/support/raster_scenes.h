@@ -35,9 +35,9 @@ inline raster::Texture pattern_texture(int width, int height, uint32_t seed) {
       const bool mortar = (y * 8) % height < height / 6 || (x * 4 + course % 2 * width / 2) % width < width / 12;
       const auto noise = static_cast<int>(random.bits() % 48);
       uint8_t* p = image.pixel(x, y);
-      p[0] = static_cast<uint8_t>((mortar ? 190 : 140 + (seed * 37) % 60) + noise);
-      p[1] = static_cast<uint8_t>((mortar ? 185 : 60 + (seed * 71) % 80) + noise);
-      p[2] = static_cast<uint8_t>((mortar ? 170 : 40 + (seed * 13) % 90) + x * 30 / width);
+      p[0] = static_cast<uint8_t>((mortar ? 190 : 140 + static_cast<int>((seed * 37) % 60)) + noise);
+      p[1] = static_cast<uint8_t>((mortar ? 185 : 60 + static_cast<int>((seed * 71) % 80)) + noise);
+      p[2] = static_cast<uint8_t>((mortar ? 170 : 40 + static_cast<int>((seed * 13) % 90)) + x * 30 / width);
       p[3] = 255;
     }
   return raster::make_texture("pattern", image);
