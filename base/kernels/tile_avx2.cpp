@@ -170,8 +170,10 @@ inline __m256i broadcast_words(__m256i v, int i) {
 }
 
 inline __m128i load_pairs(const uint8_t* texels, int32_t first, int32_t second) {
-  const auto at = [&](int32_t i) { return reinterpret_cast<const double*>(texels + 4 * ptrdiff_t{i}); };
-  return _mm_castpd_si128(_mm_loadh_pd(_mm_load_sd(at(first)), at(second)));
+  const auto at = [&](int32_t i) {
+    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(texels + 4 * ptrdiff_t{i}));
+  };
+  return _mm_unpacklo_epi64(at(first), at(second));
 }
 
 // Lane k of the low half and lane k + 4 in the high half: [fine pair | coarse pair] each, offset to signed bytes.

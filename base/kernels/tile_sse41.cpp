@@ -158,8 +158,10 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb);
 #include "base/kernels/tile_simd.inc"
 
 inline __m128i load_pairs(const uint8_t* texels, int32_t first, int32_t second) {
-  const auto at = [&](int32_t i) { return reinterpret_cast<const double*>(texels + 4 * ptrdiff_t{i}); };
-  const __m128i both = _mm_castpd_si128(_mm_loadh_pd(_mm_load_sd(at(first)), at(second)));
+  const auto at = [&](int32_t i) {
+    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(texels + 4 * ptrdiff_t{i}));
+  };
+  const __m128i both = _mm_unpacklo_epi64(at(first), at(second));
   return _mm_xor_si128(both, _mm_set1_epi8(-128));  // signed bytes
 }
 
