@@ -65,8 +65,8 @@ TEST_CASE("each malformed PLY gets its named error") {
       {kVertices + "element face 4000000000\nproperty list uchar int vertex_index\nend_header\n" + kPoints +
            "3 0 1 2\n",
        Error::truncated, "data ends too early"},
-      {"ply\nformat binary_little_endian 1.0\nelement vertex 9223372036854775807\n" + kXyz + kFace,
-       Error::truncated, "data ends too early"},
+      {"ply\nformat binary_little_endian 1.0\nelement vertex 9223372036854775807\n" + kXyz + kFace, Error::truncated,
+       "data ends too early"},
   };
   for (const Case& bad : cases) {
     CAPTURE(bad.text);
