@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <utility>
 
 #include "base/exact_math.h"
+#include "base/exact_math_float.h"
 #include "base/parallel.h"
 #include "base/ssimulacra2_weights.h"
 
@@ -67,23 +67,6 @@ Plane halve(const Plane& plane) {
   return half;
 }
 
-// x^(1/3) for x in [2^-20, 2]: a third of the exponent (and, linearly, of the mantissa) is within 3.2 %; each step of
-// Halley's iteration leaves 2/3 of the cube of the relative error: 2.3e-5, then 1e-14, so that rounding decides: 2.5e-7
-// measured over the range. Plain float operations: compilers make vectors of the loop over a row without changing a
-// bit.
-inline float cube_root(float x) {
-  int32_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  bits = static_cast<int32_t>(static_cast<float>(bits) * (1.0f / 3)) + 0x2A510000;  // 2/3 of 1.0's bits, less a bias
-  float root;
-  std::memcpy(&root, &bits, sizeof root);
-  for (int i = 0; i < 2; ++i) {
-    const float cube = root * root * root;
-    root = root * (cube + 2 * x) / (2 * cube + x);
-  }
-  return root;
-}
-
 // Cone responses: opsin absorbance matrix and bias of JPEG XL [18181-1 L.2.2], then XYB, then the offsets and factors
 // that bring every channel into about 0..1 (SSIM's terms need that).
 void xyb_row(const float* red, const float* green, const float* blue, int width, float* out_x, float* out_y,
@@ -92,10 +75,10 @@ void xyb_row(const float* red, const float* green, const float* blue, int width,
   constexpr float kCubeRootOfBias = 0.15595420054924863f;
   for (int i = 0; i < width; ++i) {
     const float r = red[i], g = green[i], b = blue[i];
-    const float l = cube_root(0.30f * r + (0.622f * g + (0.078f * b + kBias))) - kCubeRootOfBias;
-    const float m = cube_root(0.23f * r + (0.692f * g + (0.078f * b + kBias))) - kCubeRootOfBias;
+    const float l = exact_cube_root(0.30f * r + (0.622f * g + (0.078f * b + kBias))) - kCubeRootOfBias;
+    const float m = exact_cube_root(0.23f * r + (0.692f * g + (0.078f * b + kBias))) - kCubeRootOfBias;
     const float s =
-        cube_root(0.24342268924547819f * r + (0.20476744424496821f * g + (0.55180986650955360f * b + kBias))) -
+        exact_cube_root(0.24342268924547819f * r + (0.20476744424496821f * g + (0.55180986650955360f * b + kBias))) -
         kCubeRootOfBias;
     const float luma = 0.5f * (l + m);
     out_x[i] = 0.5f * (l - m) * 14.0f + 0.42f;
