@@ -147,7 +147,8 @@ TEST_CASE("isa lists every kernel") {
   size_t n_listed = 0;
   while (isa.contains("kernels[" + std::to_string(n_listed) + "].name")) ++n_listed;
   const size_t n_kernels =
-      (sizeof(pac::BlockKernels) + sizeof(pac::PixelKernels) + sizeof(pac::TileKernels)) / sizeof(void*);
+      (sizeof(pac::BlockKernels) + sizeof(pac::MotionKernels) + sizeof(pac::PixelKernels) + sizeof(pac::TileKernels)) /
+      sizeof(void*);
   CHECK(n_listed == n_kernels);
 }
 

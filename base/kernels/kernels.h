@@ -4,6 +4,7 @@
 
 #include "base/isa.h"
 #include "base/kernels/block_kernels.h"
+#include "base/kernels/motion_kernels.h"
 #include "base/kernels/pixel_kernels.h"
 #include "base/kernels/tile_kernels.h"
 
@@ -11,9 +12,10 @@ namespace pac {
 
 struct Kernels {
   Isa isa = Isa::scalar;
-  BlockKernels block;  // 8x8 transforms and quantization
-  PixelKernels pixel;  // color conversion, chroma resampling, difference and composite
-  TileKernels tile;    // rasterization inside one tile
+  BlockKernels block;    // 8x8 transforms and quantization
+  MotionKernels motion;  // block distances, prediction, transforms of prediction errors
+  PixelKernels pixel;    // color conversion, chroma resampling, difference and composite
+  TileKernels tile;      // rasterization inside one tile
 };
 
 // The table of best_isa(). One atomic load after the first call; thread-safe.

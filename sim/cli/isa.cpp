@@ -23,11 +23,33 @@ struct Kernel {
 #family, #name, [](const Kernels& table) { return reinterpret_cast<AnyFunction>(table.family.name); } \
   }
 
-// Every entry of the three families (a test counts them).
+// Every entry of the four families (a test counts them).
 const Kernel kKernelList[] = {
     PAC_KERNEL(block, fdct_islow),
     PAC_KERNEL(block, idct_islow),
     PAC_KERNEL(block, quantize),
+    PAC_KERNEL(motion, sad16),
+    PAC_KERNEL(motion, sad16_x4),
+    PAC_KERNEL(motion, satd16),
+    PAC_KERNEL(motion, sse),
+    PAC_KERNEL(motion, moments16),
+    PAC_KERNEL(motion, average),
+    PAC_KERNEL(motion, fdct_residual),
+    PAC_KERNEL(motion, idct_add),
+    PAC_KERNEL(motion, idct_put),
+    PAC_KERNEL(motion, idct_dc_add),
+    PAC_KERNEL(motion, sad16_half[0]),
+    PAC_KERNEL(motion, sad16_half[1]),
+    PAC_KERNEL(motion, sad16_half[2]),
+    PAC_KERNEL(motion, sad16_half[3]),
+    PAC_KERNEL(motion, predict16[0]),
+    PAC_KERNEL(motion, predict16[1]),
+    PAC_KERNEL(motion, predict16[2]),
+    PAC_KERNEL(motion, predict16[3]),
+    PAC_KERNEL(motion, predict8[0]),
+    PAC_KERNEL(motion, predict8[1]),
+    PAC_KERNEL(motion, predict8[2]),
+    PAC_KERNEL(motion, predict8[3]),
     PAC_KERNEL(pixel, difference_row),
     PAC_KERNEL(pixel, composite_row),
     PAC_KERNEL(pixel, ycc_from_rgb_row),

@@ -1,0 +1,38 @@
+// Decides, transforms, quantizes and reconstructs the macroblocks of one band, from top to bottom.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/kernels/kernels.h"
+#include "mpeg1/macroblock.h"
+#include "mpeg1/motion_search.h"
+#include "mpeg1/mpeg1.h"
+#include "mpeg1/predict.h"
+#include "mpeg1/quantizer.h"
+
+namespace pac::mpeg1 {
+
+// What all bands of a picture share. Bands read each other's `last_vectors` only.
+struct PictureTask {
+  const Kernels* kernels = nullptr;
+  Effort effort = Effort::normal;
+  PictureType type = PictureType::I;
+  int columns = 0, rows = 0, slice_rows = 0;
+  Planes source, reference, target;  // target: the reconstruction
+  const QuantizerSet* intra = nullptr;
+  const QuantizerSet* non_intra = nullptr;
+  const uint8_t* quantizers = nullptr;         // of each macroblock, raster order
+  const MotionVector* last_vectors = nullptr;  // of the picture before, or null
+  const MotionVector* candidates = nullptr;    // of the caller
+  int candidates_per_macroblock = 0;
+  const uint8_t* must_be_intra = nullptr;       // intra refresh: a byte a macroblock, or null
+  int f_code = 4;                               // vectors stay in its range
+  const uint8_t* bits_of_difference = nullptr;  // see SearchInput
+  Macroblock* macroblocks = nullptr;            // result, raster order
+};
+
+// Codes rows [band.first_row, band.end_row): fills their macroblocks, the band's tokens and the target's samples.
+void code_band(const PictureTask& task, Band& band);
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,122 @@
+#include "mpeg1/motion_search.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace pac::mpeg1 {
+namespace {
+
+class Search {
+ public:
+  Search(const SearchInput& input, const SearchOptions& options) : in_(input), options_(options) {}
+
+  SearchResult run() {
+    try_candidates();
+    if (options_.wide) walk(4);
+    walk(2);
+    refine();
+    return best_;
+  }
+
+ private:
+  const uint8_t* at(int x, int y) const {  // half samples, rounded down
+    return in_.reference.data[0] + (16 * in_.row + (y >> 1)) * in_.reference.stride[0] + 16 * in_.column + (x >> 1);
+  }
+  uint32_t bits_cost(int x, int y) const {
+    const int dx = std::min(std::abs(x - in_.predicted.x_halfpel), kMaxDifference);
+    const int dy = std::min(std::abs(y - in_.predicted.y_halfpel), kMaxDifference);
+    return (static_cast<uint32_t>(in_.bits_of_difference[dx] + in_.bits_of_difference[dy]) * in_.lambda_q4) >> 4;
+  }
+
+  // A vector of whole samples inside the range.
+  void try_whole(int x, int y) {
+    const uint32_t sad = in_.kernels->sad16(in_.source, in_.source_stride, at(x, y), in_.reference.stride[0]);
+    accept(x, y, sad);
+  }
+  void accept(int x, int y, uint32_t sad) {
+    const uint32_t cost = sad + bits_cost(x, y);
+    if (cost >= best_.cost) return;
+    best_ = {{static_cast<int16_t>(x), static_cast<int16_t>(y)}, sad, cost};
+  }
+
+  void try_candidates() {
+    best_.cost = ~uint32_t{0};
+    try_whole(0, 0);
+    MotionVector tried[32];
+    int n_tried = 1;  // tried[0] is zero
+    for (int i = 0; i < in_.n_candidates; ++i) {
+      MotionVector v = in_.range.clamp(in_.candidates[i]);
+      v.x_halfpel = static_cast<int16_t>(v.x_halfpel & ~1);  // the range's ends are even
+      v.y_halfpel = static_cast<int16_t>(v.y_halfpel & ~1);
+      if (std::find(tried, tried + n_tried, v) != tried + n_tried) continue;
+      if (n_tried < 32) tried[n_tried++] = v;
+      try_whole(v.x_halfpel, v.y_halfpel);
+    }
+  }
+
+  // Downhill in a diamond of that radius (half samples), without looking back to where it came from.
+  void walk(int radius) {
+    static constexpr int kDx[4] = {1, 0, -1, 0}, kDy[4] = {0, 1, 0, -1};
+    int came_from = -1;
+    for (int step = 0; step < options_.max_steps; ++step) {
+      const MotionVector center = best_.vector;
+      int moved = -1;
+      for (int direction = 0; direction < 4; ++direction) {
+        if (direction == came_from) continue;
+        const int x = center.x_halfpel + radius * kDx[direction], y = center.y_halfpel + radius * kDy[direction];
+        if (!in_.range.contains(x, y)) continue;
+        const uint32_t before = best_.cost;
+        try_whole(x, y);
+        if (best_.cost < before) moved = direction;
+      }
+      if (moved < 0) return;
+      came_from = moved ^ 2;
+    }
+  }
+
+  uint32_t half_distance(int x, int y) const {
+    const int kind = (x & 1) + 2 * (y & 1);
+    if (!options_.hadamard)
+      return in_.kernels->sad16_half[kind](in_.source, in_.source_stride, at(x, y), in_.reference.stride[0]);
+    alignas(64) uint8_t prediction[256];
+    in_.kernels->predict16[kind](at(x, y), in_.reference.stride[0], prediction, 16, 16);
+    return in_.kernels->satd16(in_.source, in_.source_stride, prediction, 16);
+  }
+
+  void refine() {
+    const MotionVector center = best_.vector;
+    if (options_.hadamard) {
+      best_.sad = half_distance(center.x_halfpel, center.y_halfpel);
+      best_.cost = best_.sad + bits_cost(center.x_halfpel, center.y_halfpel);
+    }
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int x = center.x_halfpel + dx, y = center.y_halfpel + dy;
+        if ((dx == 0 && dy == 0) || !in_.range.contains(x, y)) continue;
+        accept(x, y, half_distance(x, y));
+      }
+  }
+
+  const SearchInput& in_;
+  const SearchOptions& options_;
+  SearchResult best_;
+};
+
+}  // namespace
+
+MotionVector VectorRange::clamp(MotionVector v) const {
+  return {static_cast<int16_t>(std::clamp(int{v.x_halfpel}, x_low, x_high)),
+          static_cast<int16_t>(std::clamp(int{v.y_halfpel}, y_low, y_high))};
+}
+
+VectorRange vector_range(const Planes& reference, int column, int row, int f_code) {
+  const int reach = 16 << (f_code - 1);
+  return {std::max(-32 * column, -reach), std::min(2 * (reference.width - 16 - 16 * column), reach - 2),
+          std::max(-32 * row, -reach), std::min(2 * (reference.height - 16 - 16 * row), reach - 2)};
+}
+
+SearchResult search_motion(const SearchInput& input, const SearchOptions& options) {
+  return Search(input, options).run();
+}
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,49 @@
+// Motion estimation of one macroblock: predictors, a pattern that walks downhill, half-sample refinement.
+#pragma once
+
+#include <cstdint>
+
+#include "base/kernels/kernels.h"
+#include "mpeg1/mpeg1.h"
+#include "mpeg1/predict.h"
+
+namespace pac::mpeg1 {
+
+// Vectors that keep the prediction inside the picture and inside the largest f_code in use, both ends included.
+struct VectorRange {
+  int x_low, x_high, y_low, y_high;  // half samples
+  MotionVector clamp(MotionVector v) const;
+  bool contains(int x, int y) const { return x >= x_low && x <= x_high && y >= y_low && y <= y_high; }
+};
+VectorRange vector_range(const Planes& reference, int column, int row, int f_code);
+
+struct SearchOptions {
+  int max_steps = 8;      // of the pattern
+  bool wide = false;      // the eight neighbors at distance 2 too before it, and more
+  bool hadamard = false;  // half samples by SATD instead of SAD
+};
+
+struct SearchInput {
+  const MotionKernels* kernels;
+  const uint8_t* source;  // of the macroblock
+  ptrdiff_t source_stride;
+  Planes reference;
+  int column, row;
+  VectorRange range;
+  MotionVector predicted;          // that the stream codes the difference from
+  const MotionVector* candidates;  // any vectors; clamped here
+  int n_candidates;
+  uint32_t lambda_q4;                 // cost of a bit in units of SAD / 16
+  const uint8_t* bits_of_difference;  // vector bits by |difference|, indexed 0..kMaxDifference
+};
+constexpr int kMaxDifference = 4095;
+
+struct SearchResult {
+  MotionVector vector;
+  uint32_t sad = 0;   // of the best vector, SATD where asked for
+  uint32_t cost = 0;  // with the vector's bits
+};
+
+SearchResult search_motion(const SearchInput& input, const SearchOptions& options);
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,237 @@
+#include "mpeg1/slice_writer.h"
+
+#include <algorithm>
+
+#include "mpeg1/motion_vector.h"
+#include "mpeg1/vlc_tables.h"
+
+namespace pac::mpeg1 {
+namespace {
+
+// What the codes of a macroblock depend on besides itself.
+struct Predictions {
+  int dc[3] = {128, 128, 128};  // quantized
+  MotionVector vector;
+  int quantizer = 0;
+  int last_address = -1;  // of the last macroblock written or begun with
+};
+
+bool has_coefficients(const Macroblock& macroblock) {
+  return macroblock.kind == MacroblockKind::intra ||
+         (macroblock.kind == MacroblockKind::inter && macroblock.pattern != 0);
+}
+
+class BandWriter {
+ public:
+  BandWriter(const PictureToWrite& picture, const Band& band, FastBitWriter& bits)
+      : picture_(picture), band_(band), bits_(bits) {}
+
+  // Rows [first, end), of which only the first may begin a slice that is not the picture's own.
+  void write(int first, int end) {
+    if (first % picture_.slice_rows != 0) resume();
+    for (int row = first; row < end; ++row) {
+      if (row % picture_.slice_rows == 0) start_slice(row);
+      for (int address = row * picture_.columns; address < (row + 1) * picture_.columns; ++address)
+        if (picture_.macroblocks[address].kind != MacroblockKind::skipped) write_macroblock(address);
+    }
+  }
+
+ private:
+  void put(const Code& code) { bits_.put(code.bits, code.length); }
+
+  // The quantizer in the slice header: of the slice's first macroblock with coefficients.
+  int first_quantizer(int row) const {
+    const int end = std::min(row + picture_.slice_rows, picture_.rows) * picture_.columns;
+    for (int address = row * picture_.columns; address < end; ++address)
+      if (has_coefficients(picture_.macroblocks[address])) return picture_.macroblocks[address].quantizer;
+    return 1;
+  }
+
+  void start_slice(int row) {
+    bits_.align_to_byte();
+    bits_.put(0x000001, 24);
+    bits_.put(static_cast<uint32_t>(row + 1), 8);
+    predictions_ = {};
+    predictions_.quantizer = first_quantizer(row);
+    predictions_.last_address = row * picture_.columns - 1;
+    bits_.put(static_cast<uint32_t>(predictions_.quantizer), 5);
+    bits_.put(0, 1);  // extra_bit_slice
+  }
+
+  // The state in the middle of a slice.
+  void resume() {
+    const int slice_row = band_.first_row / picture_.slice_rows * picture_.slice_rows;
+    const int begin = slice_row * picture_.columns, end = band_.first_row * picture_.columns;
+    predictions_.quantizer = first_quantizer(slice_row);
+    predictions_.last_address = begin - 1;
+    for (int address = begin; address < end; ++address)
+      if (has_coefficients(picture_.macroblocks[address]))
+        predictions_.quantizer = picture_.macroblocks[address].quantizer;
+    for (int address = end - 1; address >= begin; --address) {
+      if (picture_.macroblocks[address].kind == MacroblockKind::skipped) continue;
+      predictions_.last_address = address;
+      break;
+    }
+    const Macroblock& last = picture_.macroblocks[end - 1];  // the first macroblock of a slice is never skipped
+    predictions_.vector = last.vector;
+    if (last.kind == MacroblockKind::intra)
+      for (const int plane : {0, 1, 2}) predictions_.dc[plane] = last.dc[plane + 3];
+  }
+
+  void write_address(int address) {
+    int increment = address - predictions_.last_address;
+    if (increment > 1) {  // skipped macroblocks in between reset predictions [2.4.4.2]
+      predictions_.vector = {};
+      reset_dc();
+    }
+    for (; increment > 33; increment -= 33) put(kAddressIncrementCodes[kAddressEscape]);
+    put(kAddressIncrementCodes[static_cast<size_t>(increment)]);
+    predictions_.last_address = address;
+  }
+  void reset_dc() { predictions_.dc[0] = predictions_.dc[1] = predictions_.dc[2] = 128; }
+
+  void write_type(const Macroblock& macroblock, bool quant) {
+    if (picture_.header.type == PictureType::I) {
+      put(kTypesOfI[quant ? 1 : 0].code);
+      return;
+    }
+    const bool moves = uses_vector(macroblock);
+    uint8_t flags = macroblock.kind == MacroblockKind::intra ? kIntra : 0;
+    if (moves) flags |= kForward;
+    if (macroblock.kind == MacroblockKind::inter && macroblock.pattern != 0) flags |= kPattern;
+    if (quant) flags |= kQuant;
+    for (const MacroblockType& type : kTypesOfP)
+      if (type.flags == flags) put(type.code);
+  }
+  // Without coefficients a macroblock that may not be skipped has a vector, even zero.
+  static bool uses_vector(const Macroblock& macroblock) {
+    return macroblock.kind == MacroblockKind::inter && (macroblock.vector != MotionVector{} || macroblock.pattern == 0);
+  }
+
+  void write_component(int vector, int predicted) {
+    const int r_size = picture_.header.forward_f_code - 1;
+    const MotionCode motion = motion_code_from(vector, predicted, r_size);
+    const int magnitude = motion.code < 0 ? -motion.code : motion.code;
+    put(kMotionCodes[static_cast<size_t>(magnitude)]);
+    if (magnitude == 0) return;
+    bits_.put(motion.code < 0 ? 1 : 0, 1);
+    bits_.put(static_cast<uint32_t>(motion.r), r_size);
+  }
+
+  void write_tokens(const Token* tokens, int count, bool first_is_special) {
+    for (int i = 0; i < count; ++i) {
+      const int run = token_run(tokens[i]), level = token_level(tokens[i]);
+      const uint32_t sign = level < 0 ? 1 : 0;
+      const int magnitude = level < 0 ? -level : level;
+      if (i == 0 && first_is_special && run == 0 && magnitude == 1) {  // dct_coeff_first
+        bits_.put(2 | sign, 2);
+        continue;
+      }
+      if (run <= kMaxTableRun && magnitude <= kMaxTableLevel) {
+        const Code& code = kWriting.run_level[static_cast<size_t>(run)][static_cast<size_t>(magnitude)];
+        if (code.length != 0) {
+          bits_.put(static_cast<uint32_t>(code.bits) << 1 | sign, code.length + 1);
+          continue;
+        }
+      }
+      write_escape(run, level);
+    }
+    put(kEndOfBlock);
+  }
+  void write_escape(int run, int level) {
+    bits_.put(static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run), 12);
+    if (level > 127)
+      bits_.put(static_cast<uint32_t>(level), 16);
+    else if (level < -127)
+      bits_.put(0x8000 | static_cast<uint32_t>(level + 256), 16);
+    else
+      bits_.put(static_cast<uint32_t>(level) & 255, 8);
+  }
+
+  void write_dc(int block, int dc) {
+    int& prediction = predictions_.dc[block < 4 ? 0 : block - 3];
+    const int differential = dc - prediction;
+    prediction = dc;
+    const int magnitude = differential < 0 ? -differential : differential;
+    int size = 0;
+    while (magnitude >> size != 0) ++size;
+    put(block < 4 ? kDcSizeLuminance[static_cast<size_t>(size)] : kDcSizeChrominance[static_cast<size_t>(size)]);
+    const int bits = differential < 0 ? differential + (1 << size) - 1 : differential;
+    bits_.put(static_cast<uint32_t>(bits), size);
+  }
+
+  void write_macroblock(int address) {
+    const Macroblock& macroblock = picture_.macroblocks[address];
+    const bool is_intra = macroblock.kind == MacroblockKind::intra;
+    write_address(address);
+    const bool quant = has_coefficients(macroblock) && macroblock.quantizer != predictions_.quantizer;
+    write_type(macroblock, quant);
+    if (quant) {
+      predictions_.quantizer = macroblock.quantizer;
+      bits_.put(macroblock.quantizer, 5);
+    }
+    if (uses_vector(macroblock)) {
+      write_component(macroblock.vector.x_halfpel, predictions_.vector.x_halfpel);
+      write_component(macroblock.vector.y_halfpel, predictions_.vector.y_halfpel);
+    }
+    predictions_.vector = macroblock.vector;
+    if (!is_intra) reset_dc();
+    if (!is_intra && macroblock.pattern != 0) put(kPatternCodes[macroblock.pattern]);
+    const Token* tokens = band_.tokens.data() + macroblock.first_token;
+    for (int block = 0; block < 6; ++block) {
+      if (is_intra)
+        write_dc(block, macroblock.dc[block]);
+      else if ((macroblock.pattern & 32 >> block) == 0)
+        continue;
+      write_tokens(tokens, macroblock.counts[block], !is_intra);
+      tokens += macroblock.counts[block];
+    }
+  }
+
+  const PictureToWrite& picture_;
+  const Band& band_;
+  FastBitWriter& bits_;
+  Predictions predictions_;
+};
+
+}  // namespace
+
+int motion_bits(int vector, int predicted, int r_size) {
+  const MotionCode motion = motion_code_from(vector, predicted, r_size);
+  const int magnitude = motion.code < 0 ? -motion.code : motion.code;
+  return kMotionCodes[static_cast<size_t>(magnitude)].length + (magnitude == 0 ? 0 : 1 + r_size);
+}
+
+int needed_f_code(const PictureToWrite& picture) {
+  int low = 0, high = 0;
+  for (int i = 0; i < picture.columns * picture.rows; ++i) {
+    const MotionVector& v = picture.macroblocks[i].vector;
+    low = std::min({low, int{v.x_halfpel}, int{v.y_halfpel}});
+    high = std::max({high, int{v.x_halfpel}, int{v.y_halfpel}});
+  }
+  int f_code = 1;
+  while (f_code < 7 && (low < -(16 << (f_code - 1)) || high > (16 << (f_code - 1)) - 1)) ++f_code;
+  return f_code;
+}
+
+void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits) {
+  const int next_slice = (band.first_row + picture.slice_rows - 1) / picture.slice_rows * picture.slice_rows;
+  const int split = std::min(next_slice, band.end_row);
+  bits.head.clear();
+  bits.slices.clear();
+  if (split > band.first_row) BandWriter(picture, band, bits.head).write(band.first_row, split);
+  if (split < band.end_row) BandWriter(picture, band, bits.slices).write(split, band.end_row);
+}
+
+void join_bands(std::span<const BandBits> bands, std::vector<uint8_t>& out) {
+  FastBitWriter all;
+  for (const BandBits& band : bands) {
+    all.append(band.head);
+    if (band.slices.size_bits() == 0) continue;
+    all.align_to_byte();
+    all.append(band.slices);
+  }
+  all.append_to(out);
+}
+
+}  // namespace pac::mpeg1

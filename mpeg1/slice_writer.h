@@ -1,0 +1,37 @@
+// Bits of slices: headers, macroblock types, vectors, blocks [11172-2 2.4.2.6 to 2.4.2.8].
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mpeg1/bit_writer.h"
+#include "mpeg1/macroblock.h"
+#include "mpeg1/mpeg1.h"
+
+namespace pac::mpeg1 {
+
+struct PictureToWrite {
+  PictureHeader header;
+  int columns = 0, rows = 0;                // macroblocks
+  int slice_rows = 0;                       // macroblock rows a slice, 1..rows
+  const Macroblock* macroblocks = nullptr;  // raster order
+};
+
+// Bits of a motion vector component for the prediction of cost, f_code - 1 = r_size.
+int motion_bits(int vector, int predicted, int r_size);
+
+// The smallest f_code that reaches every vector of the picture, 1..7.
+int needed_f_code(const PictureToWrite& picture);
+
+// Writes the band's macroblocks. A slice that began in an earlier band goes on: what it predicts from is found in the
+// macroblocks before.
+// The bits before the band's first slice start code, which go on where the band before ended, and those from it on.
+struct BandBits {
+  FastBitWriter head, slices;
+};
+void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits);
+
+// Appends all bands' bits, in order, slices on byte boundaries.
+void join_bands(std::span<const BandBits> bands, std::vector<uint8_t>& out);
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,94 @@
+// The variable length codes of video [11172-2 Annex B]: tables B.1 to B.5, once, for reading and writing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace pac::mpeg1 {
+
+struct Code {
+  uint16_t bits = 0;   // right-aligned
+  uint8_t length = 0;  // 0: no such code
+};
+
+// Table B.1, macroblock_address_increment 1..33 at [1..33].
+constexpr int kAddressEscape = 34;    // 0000 0001 000: adds 33
+constexpr int kAddressStuffing = 35;  // 0000 0001 111: to be skipped
+extern const std::array<Code, 36> kAddressIncrementCodes;
+
+// What a macroblock_type [tables B.2a..d] says is in the macroblock.
+constexpr uint8_t kQuant = 16, kForward = 8, kBackward = 4, kPattern = 2, kIntra = 1;
+struct MacroblockType {
+  uint8_t flags;
+  Code code;
+};
+extern const std::array<MacroblockType, 2> kTypesOfI;
+extern const std::array<MacroblockType, 7> kTypesOfP;
+extern const std::array<MacroblockType, 11> kTypesOfB;
+
+// Table B.3: coded_block_pattern 1..63 at [1..63]; bit 5 = first luma block, bit 0 = Cr. 0 has no code.
+extern const std::array<Code, 64> kPatternCodes;
+
+// Table B.4: |motion_code| 0..16, without the sign bit that follows those above 0.
+extern const std::array<Code, 17> kMotionCodes;
+
+// Tables B.5a, B.5b: dct_dc_size 0..8.
+extern const std::array<Code, 9> kDcSizeLuminance, kDcSizeChrominance;
+
+// Tables B.5c..f, dct_coeff_next: run, |level|, without the sign bit. Run 0 level 1 is '11'; as dct_coeff_first '1'.
+struct RunLevelCode {
+  uint8_t run, level;
+  Code code;
+};
+extern const std::array<RunLevelCode, 111> kRunLevelCodes;
+constexpr Code kEscapeCode{0b000001, 6};
+constexpr Code kEndOfBlock{0b10, 2};
+constexpr int kMaxTableRun = 31, kMaxTableLevel = 40;
+
+// ---- For reading: tables indexed by the next bits ------------------------------------------------------------------
+
+// Any code of up to kBits bits: symbol and length; length 0 where no code begins so.
+struct Symbol {
+  uint8_t value = 0, length = 0;
+};
+struct CoefficientSymbol {
+  int8_t run = 0;     // 0..31, or one of the below
+  int8_t length = 0;  // with the sign bit; 0: no code begins so
+  int16_t level = 0;  // signed
+};
+constexpr int8_t kRunEndOfBlock = 64, kRunEscape = 65;
+constexpr int kShortBits = 9, kLongBits = 17;  // first table; longest code with sign
+constexpr int kLongPrefix = 6;                 // all longer codes begin with so many zeros
+
+struct ReadingTables {
+  std::array<Symbol, 2048> address_increment;             // 11 bits
+  std::array<std::array<Symbol, 64>, 5> macroblock_type;  // 6 bits, by PictureType 1..4; value: flags
+  std::array<Symbol, 512> pattern;                        // 9 bits
+  std::array<Symbol, 2048> motion;                        // 11 bits with the sign; value: code + 16, length with sign
+  std::array<Symbol, 128> dc_luminance;                   // 7 bits
+  std::array<Symbol, 256> dc_chrominance;                 // 8 bits
+  std::array<CoefficientSymbol, 1 << kShortBits> coefficient_short;
+  std::array<CoefficientSymbol, 1 << (kLongBits - kLongPrefix)> coefficient_long;
+};
+extern const ReadingTables kReading;
+
+// ---- For writing ---------------------------------------------------------------------------------------------------
+
+// The code with its sign bit for run 0..63 and |level| 1..255, escapes included.
+struct WritingTables {
+  // [run][|level|]: code without sign in the high bits, 0 length where only the escape serves.
+  std::array<std::array<Code, kMaxTableLevel + 1>, kMaxTableRun + 1> run_level;
+};
+extern const WritingTables kWriting;
+
+// Bits of dct_coeff_next for run and |level| >= 1, sign included [2.4.3.7].
+inline int run_level_bits(int run, int level) {
+  if (run <= kMaxTableRun && level <= kMaxTableLevel) {
+    const Code& code = kWriting.run_level[static_cast<size_t>(run)][static_cast<size_t>(level)];
+    if (code.length != 0) return code.length + 1;
+  }
+  return level < 128 ? 20 : 28;
+}
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,205 @@
+// The motion kernels of every instruction set equal the scalar ones, and the transforms are accurate.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/support/kernel_check.h"
+
+namespace pac::test {
+namespace {
+
+constexpr size_t kStrides[] = {16, 17, 40};
+
+TEST_CASE("distances: every instruction set gives the scalar number") {
+  GuardedBuffer source(4096), reference(4096);
+  for (uint64_t seed = 0; seed < 96; ++seed)
+    for (const Pattern pattern : {Pattern::random, Pattern::extremes, Pattern::basis_signs, Pattern::ramp}) {
+      const size_t stride = kStrides[seed % 3];
+      const Guard guard = kGuards[seed % 2];
+      uint8_t* s = source.place(15 * stride + 16, guard, seed % 16);
+      uint8_t* r = reference.place(16 * stride + 17, guard, seed * 7 % 64);
+      fill(std::span(s, 15 * stride + 16), pattern, 0, 255, seed);
+      fill(std::span(r, 16 * stride + 17), seed % 4 == 0 ? Pattern::lowest : Pattern::random, 0, 255, seed + 1);
+      const auto step = static_cast<ptrdiff_t>(stride);
+      for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+        CHECK(table.motion.sad16(s, step, r, step) == scalar.motion.sad16(s, step, r, step));
+        CHECK(table.motion.satd16(s, step, r, step) == scalar.motion.satd16(s, step, r, step));
+        for (const int width : {8, 16})
+          CHECK(table.motion.sse(s, step, r, step, width, width) == scalar.motion.sse(s, step, r, step, width, width));
+        for (int kind = 0; kind < kHalfPelKinds; ++kind)
+          CHECK(table.motion.sad16_half[kind](s, step, r, step) == scalar.motion.sad16_half[kind](s, step, r, step));
+        const uint8_t* const four[4] = {r, r + 1, r + stride, r + stride + 1};
+        uint32_t expected[4], actual[4];
+        scalar.motion.sad16_x4(s, step, four, step, expected);
+        table.motion.sad16_x4(s, step, four, step, actual);
+        for (int i = 0; i < 4; ++i) CHECK(actual[i] == expected[i]);
+        uint32_t sums[4];
+        scalar.motion.moments16(s, step, &sums[0], &sums[1]);
+        table.motion.moments16(s, step, &sums[2], &sums[3]);
+        CHECK(sums[0] == sums[2]);
+        CHECK(sums[1] == sums[3]);
+      });
+    }
+}
+
+TEST_CASE("predictions: every instruction set gives the scalar bits and reads no further than they say") {
+  KernelCheck check(4096);
+  for (uint64_t seed = 0; seed < 60; ++seed)
+    for (int kind = 0; kind < kHalfPelKinds; ++kind)
+      for (const size_t width : {size_t{8}, size_t{16}}) {
+        const size_t stride = width + 1 + seed % 3 * 9, height = seed % 2 == 0 ? width : 4;
+        const size_t bytes =
+            (height - 1 + static_cast<size_t>(kind / 2)) * stride + width + static_cast<size_t>(kind % 2);
+        const Guard guard = kGuards[seed / 2 % 2];
+        const Pattern pattern = seed % 5 == 0 ? Pattern::extremes : Pattern::random;
+        const uint8_t* r = check.input<uint8_t>(0, bytes, guard, seed % 64, pattern, 0, 255, seed);
+        const auto step = static_cast<ptrdiff_t>(stride);
+        const auto out_step = static_cast<ptrdiff_t>(width);
+        check.compare<uint8_t>(width * height, guard, seed * 3 % 64, [&](const Kernels& table, uint8_t* out) {
+          const auto* predict = width == 16 ? table.motion.predict16 : table.motion.predict8;
+          predict[kind](r, step, out, out_step, static_cast<int>(height));
+        });
+        if (kind != 0) continue;
+        check.compare<uint8_t>(width * height, guard, seed * 3 % 64, [&](const Kernels& table, uint8_t* out) {
+          table.motion.average(out, out_step, r, step, static_cast<int>(width), static_cast<int>(height));
+        });
+      }
+}
+
+TEST_CASE("fdct_residual: every instruction set gives the scalar bits") {
+  KernelCheck check(8192);
+  for (const Pattern pattern : kPatterns)
+    for (uint64_t seed = 0; seed < 64; ++seed) {
+      CAPTURE(pattern_name(pattern));
+      const size_t n = 1 + seed % 3, stride = 8 * n + seed % 2;
+      const auto step = static_cast<ptrdiff_t>(stride);
+      const uint8_t* s = check.input<uint8_t>(0, 7 * stride + 8 * n, Guard::after, seed % 64, pattern, 0, 255, seed);
+      const Pattern other = seed % 3 == 0 ? Pattern::zeros : seed % 3 == 1 ? Pattern::random : Pattern::highest;
+      const uint8_t* p = check.input<uint8_t>(1, 7 * stride + 8 * n, Guard::after, 0, other, 0, 255, seed + 9);
+      check.compare<int16_t>(64 * n, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
+        table.motion.fdct_residual(s, step, p, step, n, out);
+      });
+    }
+}
+
+TEST_CASE("idct: every instruction set gives the scalar bits, whatever the input") {
+  KernelCheck check(8192);
+  for (const int64_t range : {300, 2047, 32767})
+    for (const Pattern pattern : kPatterns)
+      for (uint64_t seed = 0; seed < 64; ++seed) {
+        const size_t n = 1 + seed % 5;
+        const int16_t* coefficients =
+            check.input<int16_t>(0, 64 * n, Guard::after, seed * 2 % 64, pattern, -range - 1, range, seed);
+        const auto run = [&](auto member) {
+          check.compare<uint8_t>(64 * n, Guard::after, seed % 64, [&](const Kernels& table, uint8_t* out) {
+            uint8_t* samples[5];
+            ptrdiff_t strides[5];
+            for (size_t i = 0; i < n; ++i) samples[i] = out + 64 * i, strides[i] = 8;
+            (table.motion.*member)(coefficients, n, samples, strides);
+          });
+        };
+        run(&MotionKernels::idct_add);
+        run(&MotionKernels::idct_put);
+      }
+}
+
+TEST_CASE("idct_dc_add is idct_add of a lone DC coefficient") {
+  for (int dc = -2048; dc <= 2047; ++dc)
+    for (const Kernels* table : {kernels_for(Isa::scalar), &kernels()}) {
+      std::array<uint8_t, 64> one, other;
+      for (size_t i = 0; i < 64; ++i) one[i] = other[i] = static_cast<uint8_t>(i * 4);
+      int16_t coefficients[64] = {static_cast<int16_t>(dc)};
+      uint8_t* samples = one.data();
+      const ptrdiff_t stride = 8;
+      table->motion.idct_add(coefficients, 1, &samples, &stride);
+      table->motion.idct_dc_add(dc, other.data(), 8);
+      REQUIRE(one == other);
+    }
+}
+
+// IEEE 1180-1990 section 3: blocks of random errors through an exact forward transform, rounded to coefficients,
+// back by the exact inverse and by ours.
+struct Accuracy {
+  double peak = 0, worst_mse = 0, mse = 0, worst_mean = 0, mean = 0;
+};
+
+using Matrix = std::array<double, 64>;
+Matrix basis() {
+  Matrix c;
+  for (size_t u = 0; u < 8; ++u)
+    for (size_t x = 0; x < 8; ++x)
+      c[8 * u + x] = (u == 0 ? std::sqrt(0.125) : 0.5) *
+                     std::cos(static_cast<double>((2 * x + 1) * u) * 3.14159265358979323846 / 16);
+  return c;
+}
+// c * in * c^T, or its inverse.
+Matrix transform(const Matrix& c, const Matrix& in, bool inverse) {
+  const auto at = [&](size_t i, size_t j) { return inverse ? c[8 * j + i] : c[8 * i + j]; };
+  Matrix half{}, out{};
+  for (size_t i = 0; i < 8; ++i)
+    for (size_t j = 0; j < 8; ++j)
+      for (size_t k = 0; k < 8; ++k) half[8 * i + j] += at(i, k) * in[8 * k + j];
+  for (size_t i = 0; i < 8; ++i)
+    for (size_t j = 0; j < 8; ++j)
+      for (size_t k = 0; k < 8; ++k) out[8 * i + j] += half[8 * i + k] * at(j, k);
+  return out;
+}
+
+// The error block that the kernel computes, through samples of 128 so that nothing of -128..127 is clamped; larger
+// errors are compared as far as they are seen.
+Accuracy measure_accuracy(int low, int high, int sign, int n_blocks) {
+  const Matrix c = basis();
+  Random random(static_cast<uint64_t>(high * 2 + sign));
+  std::array<double, 64> sum{}, squares{};
+  Accuracy accuracy;
+  for (int block = 0; block < n_blocks; ++block) {
+    Matrix samples;
+    for (double& s : samples) s = static_cast<double>(sign * random.in(-low, high));
+    const Matrix dct = transform(c, samples, false);
+    int16_t coefficients[64];
+    Matrix rounded;
+    for (size_t i = 0; i < 64; ++i) {
+      rounded[i] = std::min(2047.0, std::max(-2048.0, std::floor(dct[i] + 0.5)));
+      coefficients[i] = static_cast<int16_t>(rounded[i]);
+    }
+    const Matrix exact = transform(c, rounded, true);
+    uint8_t up[64] = {}, down[64];
+    std::memset(down, 255, sizeof down);
+    uint8_t* planes[2] = {up, down};
+    const ptrdiff_t strides[2] = {8, 8};
+    kernels().motion.idct_add(coefficients, 1, planes, strides);
+    kernels().motion.idct_add(coefficients, 1, planes + 1, strides);
+    for (size_t i = 0; i < 64; ++i) {
+      const int ours = up[i] != 0 ? up[i] : down[i] - 255;  // positive errors from 0 up, negative from 255 down
+      const double reference = std::min(255.0, std::max(-255.0, std::floor(exact[i] + 0.5)));
+      const double error = ours - reference;
+      accuracy.peak = std::max(accuracy.peak, std::abs(error));
+      sum[i] += error;
+      squares[i] += error * error;
+    }
+  }
+  for (size_t i = 0; i < 64; ++i) {
+    accuracy.worst_mse = std::max(accuracy.worst_mse, squares[i] / n_blocks);
+    accuracy.worst_mean = std::max(accuracy.worst_mean, std::abs(sum[i]) / n_blocks);
+    accuracy.mse += squares[i] / n_blocks / 64;
+    accuracy.mean += sum[i] / n_blocks / 64;
+  }
+  return accuracy;
+}
+
+TEST_CASE("idct meets the limits of IEEE 1180-1990") {
+  for (const auto& [low, high] : {std::pair{256, 255}, {5, 5}, {300, 300}})
+    for (const int sign : {1, -1}) {
+      const Accuracy accuracy = measure_accuracy(low, high, sign, 10000);
+      CAPTURE(high);
+      CHECK(accuracy.peak <= 1);
+      CHECK(accuracy.worst_mse <= 0.06);
+      CHECK(accuracy.mse <= 0.02);
+      CHECK(accuracy.worst_mean <= 0.015);
+      CHECK(std::abs(accuracy.mean) <= 0.0015);
+    }
+}
+
+}  // namespace
+}  // namespace pac::test

@@ -1,0 +1,29 @@
+// Small moving pictures for the video tests: a textured ground that pans, a disc that crosses it, a light that changes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/image.h"
+#include "mpeg1/mpeg1.h"
+
+namespace pac::test {
+
+// Frame `time` of a clip of that size; `seed` gives another one.
+Frame420 clip_frame(int width, int height, int time, int seed = 0);
+std::vector<Frame420> clip(int width, int height, int n_frames, int seed = 0);
+
+// All frames through an encoder, sequence end included.
+std::vector<uint8_t> encode_clip(const std::vector<Frame420>& frames, const mpeg1::SequenceOptions& options,
+                                 Isa isa = best_isa());
+
+// Every picture of a stream, in display order; `report` may be null. Fails the test where decoding fails.
+std::vector<Frame420> decode_all(std::span<const uint8_t> bytes, const mpeg1::DecoderOptions& options = {},
+                                 mpeg1::ErrorReport* report = nullptr, Isa isa = best_isa());
+
+bool equal(const mpeg1::FrameView& a, const mpeg1::FrameView& b);
+// Over all samples of the three planes.
+double psnr(const mpeg1::FrameView& a, const mpeg1::FrameView& b);
+
+}  // namespace pac::test
