@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "base/exact_math.h"
+#include "base/flip.h"
+#include "base/psnr_hvs.h"
+#include "base/ssimulacra2.h"
 
 namespace pac {
 namespace {
@@ -136,13 +139,33 @@ double compression_ratio(int width, int height, uint64_t size_bytes) {
   return 3.0 * width * height / static_cast<double>(size_bytes);
 }
 
-Metrics measure(ConstRgbView reference, ConstRgbView test) {
+double flicker_rms(PlaneView<const uint8_t> previous_reference, PlaneView<const uint8_t> reference,
+                   PlaneView<const uint8_t> previous_test, PlaneView<const uint8_t> test) {
+  assert_comparable(reference, test);
+  assert_comparable(previous_reference, previous_test);
+  assert_comparable(reference, previous_reference);
+  uint64_t squares = 0;
+  for (int y = 0; y < test.height; ++y)
+    for (int x = 0; x < test.width; ++x) {
+      const int change = *reference.pixel(x, y) - *previous_reference.pixel(x, y);
+      const int error = *test.pixel(x, y) - *previous_test.pixel(x, y) - change;
+      squares += static_cast<uint64_t>(error * error);
+    }
+  return std::sqrt(static_cast<double>(squares) / (static_cast<double>(test.width) * test.height));
+}
+
+Metrics measure(ConstRgbView reference, ConstRgbView test, ThreadPool* pool) {
   Metrics metrics;
   const double mse_rgb = mse(reference, test);
   metrics.rms = std::sqrt(mse_rgb);
   metrics.psnr_rgb_db = psnr_from_mse(mse_rgb);
   const GrayImage a = luma_of(reference), b = luma_of(test);
   metrics.psnr_luma_db = psnr_from_mse(mse(a.view(), b.view()));
+  const PsnrHvs hvs = psnr_hvs(a.view(), b.view());
+  metrics.psnr_hvs_db = hvs.psnr_hvs_db;
+  metrics.psnr_hvs_m_db = hvs.psnr_hvs_m_db;
+  metrics.ssimulacra2 = ssimulacra2(reference, test, pool);
+  metrics.flip = flip(reference, test, pool);
   metrics.ssim = ssim(a.view(), b.view());
   metrics.ms_ssim = ms_ssim_luma(reference, test);
   for (int y = 0; y < reference.height; ++y)

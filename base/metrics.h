@@ -8,6 +8,8 @@
 
 namespace pac {
 
+class ThreadPool;
+
 // BT.601 luma, full range: round(0.299 R + 0.587 G + 0.114 B), in 16-bit fixed point.
 constexpr uint8_t luma_bt601(int r, int g, int b) {
   return static_cast<uint8_t>((19595 * r + 38470 * g + 7471 * b + 32768) >> 16);
@@ -51,14 +53,22 @@ double entropy(PlaneView<const uint8_t> image);  // one plane: bits a sample
 // Bytes of the raw picture (3 a pixel) for one byte of code, the paper's compression ratio n:1. size_bytes >= 1.
 double compression_ratio(int width, int height, uint64_t size_bytes);
 
+// Flicker: rms of the error in the change between two successive frames, (test - previous test) - (reference - previous
+// reference), in levels; 0 if every change is right, whatever the frames look like. Four planes of equal, nonzero size.
+double flicker_rms(PlaneView<const uint8_t> previous_reference, PlaneView<const uint8_t> reference,
+                   PlaneView<const uint8_t> previous_test, PlaneView<const uint8_t> test);
+
 struct Metrics {
-  double rms = 0;                            // levels
-  double psnr_rgb_db = 0, psnr_luma_db = 0;  // +infinity where equal
-  double ssim = 0, ms_ssim = 0;              // of luma
-  int max_error = 0;                         // largest difference of any sample, levels
+  double rms = 0;                             // levels
+  double psnr_rgb_db = 0, psnr_luma_db = 0;   // +infinity where equal
+  double psnr_hvs_db = 0, psnr_hvs_m_db = 0;  // of luma, +infinity where nothing is visible (base/psnr_hvs.h)
+  double ssim = 0, ms_ssim = 0;               // of luma
+  double ssimulacra2 = 0;                     // 100 = equal (base/ssimulacra2.h)
+  double flip = 0;                            // 0 = equal, 1 = largest (base/flip.h)
+  int max_error = 0;                          // largest difference of any sample, levels
 };
-// All of them; reference and test of equal, nonzero size.
-Metrics measure(ConstRgbView reference, ConstRgbView test);
+// All of them; reference and test of equal, nonzero size. Same bits for every number of threads.
+Metrics measure(ConstRgbView reference, ConstRgbView test, ThreadPool* pool = nullptr);
 
 // |reference - test| * gain, clamped to 255, sample by sample: a picture of where the error is.
 RgbImage error_map(ConstRgbView reference, ConstRgbView test, int gain = 8);

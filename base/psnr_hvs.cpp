@@ -25,8 +25,8 @@ constexpr std::array<int, kSize> kTableK1{16, 11, 10, 16, 24,  40,  51,  61,   /
                                           49, 64, 78, 87, 103, 121, 120, 101,  //
                                           72, 92, 95, 98, 112, 100, 103, 99};
 
-// The authors' two tables, which they print to six digits, are these functions of K.1: sensitivity 25.73509 / q, masking
-// (10 / q)^2.
+// The authors' two tables, which they print to six digits, are these functions of K.1: sensitivity 25.73509 / q,
+// masking (10 / q)^2.
 struct Tables {
   Block sensitivity, masking;
   Block cosine;  // orthonormal DCT-II: row u, column x
