@@ -137,6 +137,9 @@ TEST_CASE("--json prints one JSON object and nothing else, for every command tha
   const auto metrics = json(folder.pac("metrics a.png b.png --json --map map.png"));
   CHECK(number(metrics, "rms") > 0);
   CHECK(number(metrics, "ssim") < 1);
+  CHECK(number(metrics, "ssimulacra2") < 100);
+  CHECK(number(metrics, "flip") > 0);
+  CHECK(number(metrics, "psnr_hvs_m_db") > number(metrics, "psnr_hvs_db"));
   CHECK(folder.exists("map.png"));
   CHECK(json(folder.pac("metrics a.png a.png --json")).at("psnr_rgb_db") == "null");
 }
@@ -357,6 +360,10 @@ TEST_CASE("metrics compares sequences frame by frame") {
   CHECK(number(scores, "frames") == 3);
   CHECK(number(scores, "rms_luma.mean") == doctest::Approx(4));
   CHECK(number(scores, "rms_luma.worst_5_percent") == doctest::Approx(4));
+  CHECK(number(scores, "flicker.mean") == 0);  // 4 levels too bright in every frame
+  CHECK(number(scores, "ssimulacra2.mean") < 100);
+  CHECK(number(scores, "flip.worst_5_percent") >= number(scores, "flip.mean"));
+  CHECK(number(scores, "psnr_hvs_m_db.mean") > 20);
   const CliRun shorter = folder.pac("metrics a.y4m short.y4m");
   CHECK(shorter.code == 1);
   CHECK(contains(shorter.err, "fewer frames"));

@@ -1,6 +1,7 @@
 // `pac compare`: one still through both arms at matched bytes.
 #include <cstdio>
 
+#include "base/cambi.h"
 #include "base/image_io.h"
 #include "base/metrics.h"
 #include "sim/cli/command.h"
@@ -64,6 +65,10 @@ void json_arm(sim::JsonWriter& json, const char* name, const sim::Arm& arm, cons
   json.field("psnr_luma_db", metrics.psnr_luma_db);
   json.field("ssim", metrics.ssim);
   json.field("ms_ssim", metrics.ms_ssim);
+  json.field("ssimulacra2", metrics.ssimulacra2);
+  json.field("flip", metrics.flip);
+  json.field("psnr_hvs_m_db", metrics.psnr_hvs_m_db);
+  json.field("cambi", cambi_luma(arm.shown.view()));
   json.field("max_error", metrics.max_error);
   json.end_object();
 }

@@ -2,9 +2,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <utility>
 #include <vector>
 
+#include "base/cambi.h"
+#include "base/flip.h"
+#include "base/kernels/kernels.h"
 #include "base/metrics.h"
+#include "base/parallel.h"
+#include "base/psnr_hvs.h"
+#include "base/ssimulacra2.h"
+#include "base/verdict.h"
 #include "base/y4m.h"
 #include "sim/cli/metrics.h"
 
@@ -12,45 +21,77 @@ namespace pac::cli {
 namespace {
 
 struct FrameScores {
-  double rms_luma = 0, psnr_luma_db = 0, ssim = 0;
+  double rms_luma = 0, psnr_luma_db = 0, psnr_hvs_m_db = 0, ssim = 0, ssimulacra2 = 0, flip = 0;
+  double cambi = 0;    // of the test
+  double flicker = 0;  // of the change from the frame before
 };
 
-FrameScores score(const Frame420& reference, const Frame420& test) {
-  const double error = mean_squared_error(reference.y.view(), test.y.view());
-  return {std::sqrt(error), psnr_from_mse(error), ssim(reference.y.view(), test.y.view())};
+// JFIF's colors, chroma by the triangle filter.
+RgbImage rgb_of(const Frame420& frame, Isa isa) {
+  const Kernels* kernels = kernels_for(isa);
+  PAC_ASSERT(kernels != nullptr);
+  const PixelKernels& pixel = kernels->pixel;
+  const auto n_chroma = static_cast<size_t>(frame.cb.width());
+  std::vector<uint8_t> cb(2 * n_chroma), cr(2 * n_chroma);
+  RgbImage picture(frame.width(), frame.height());
+  for (int y = 0; y < frame.height(); ++y) {
+    const int near = y / 2, far = std::clamp(y % 2 == 0 ? near - 1 : near + 1, 0, frame.cb.height() - 1);
+    pixel.upsample_h2v2_row(frame.cb.row(near), frame.cb.row(far), n_chroma, cb.data());
+    pixel.upsample_h2v2_row(frame.cr.row(near), frame.cr.row(far), n_chroma, cr.data());
+    pixel.rgb_from_ycc_row(frame.y.row(y), cb.data(), cr.data(), static_cast<size_t>(frame.width()), picture.row(y));
+  }
+  return picture;
 }
 
-struct Summary {
-  double mean = 0, worst = 0;  // worst: the value that 5 % of the frames reach or fall behind
-};
+// previous: the frames before, empty for the first.
+FrameScores score(const Frame420& reference, const Frame420& test, const Frame420& previous_reference,
+                  const Frame420& previous_test, Isa isa, ThreadPool& pool) {
+  const double error = mean_squared_error(reference.y.view(), test.y.view());
+  const RgbImage a = rgb_of(reference, isa), b = rgb_of(test, isa);
+  FrameScores scores;
+  scores.rms_luma = std::sqrt(error);
+  scores.psnr_luma_db = psnr_from_mse(error);
+  scores.psnr_hvs_m_db = psnr_hvs(reference.y.view(), test.y.view()).psnr_hvs_m_db;
+  scores.ssim = ssim(reference.y.view(), test.y.view());
+  scores.ssimulacra2 = ssimulacra2(a.view(), b.view(), &pool);
+  scores.flip = flip(a.view(), b.view(), &pool);
+  scores.cambi = cambi(test.y.view());
+  if (!previous_test.y.empty())
+    scores.flicker =
+        flicker_rms(previous_reference.y.view(), reference.y.view(), previous_test.y.view(), test.y.view());
+  return scores;
+}
 
-// better_is_larger tells which end is the worst.
-Summary summarize(const std::vector<FrameScores>& frames, double FrameScores::*member, bool better_is_larger) {
+// skip: frames at the start that have no value.
+FrameSummary summarize(const std::vector<FrameScores>& frames, double FrameScores::*member, Better better,
+                       size_t skip = 0) {
   std::vector<double> values;
-  for (const FrameScores& frame : frames) values.push_back(frame.*member);
-  Summary summary;
-  for (const double value : values) summary.mean += value / static_cast<double>(values.size());
-  std::sort(values.begin(), values.end());
-  if (!better_is_larger) std::reverse(values.begin(), values.end());
-  summary.worst = values[(values.size() - 1) / 20];
-  return summary;
+  for (size_t i = skip; i < frames.size(); ++i) values.push_back(frames[i].*member);
+  return summarize_frames(values, better, std::numeric_limits<double>::infinity());
 }
 
 struct Row {
   const char* key;
   const char* label;
-  Summary summary;
+  FrameSummary summary;
   int digits;
 };
 
 int print(const Options& options, const Y4mHeader& header, const std::vector<FrameScores>& frames) {
-  const Row rows[] = {{"rms_luma", "rms, luma (levels)", summarize(frames, &FrameScores::rms_luma, false), 4},
-                      {"psnr_luma_db", "PSNR, luma (dB)", summarize(frames, &FrameScores::psnr_luma_db, true), 3},
-                      {"ssim", "SSIM, luma", summarize(frames, &FrameScores::ssim, true), 5}};
+  const Row rows[] = {
+      {"rms_luma", "rms, luma (levels)", summarize(frames, &FrameScores::rms_luma, Better::smaller), 4},
+      {"psnr_luma_db", "PSNR, luma (dB)", summarize(frames, &FrameScores::psnr_luma_db, Better::larger), 3},
+      {"psnr_hvs_m_db", "PSNR-HVS-M (dB)", summarize(frames, &FrameScores::psnr_hvs_m_db, Better::larger), 3},
+      {"ssim", "SSIM, luma", summarize(frames, &FrameScores::ssim, Better::larger), 5},
+      {"ssimulacra2", "SSIMULACRA 2.1", summarize(frames, &FrameScores::ssimulacra2, Better::larger), 3},
+      {"flip", "FLIP, mean", summarize(frames, &FrameScores::flip, Better::smaller), 5},
+      {"cambi", "banding (CAMBI)", summarize(frames, &FrameScores::cambi, Better::smaller), 3},
+      {"flicker", "flicker, luma (rms)", summarize(frames, &FrameScores::flicker, Better::smaller, 1), 4}};
   if (!options.json) {
     std::printf("%zu frames%17s %10s\n", frames.size(), "mean", "worst 5 %");
     for (const Row& row : rows)
-      std::printf("%-20s %*.*f %10.*f\n", row.label, 10, row.digits, row.summary.mean, row.digits, row.summary.worst);
+      std::printf("%-20s %*.*f %10.*f\n", row.label, 10, row.digits, row.summary.mean, row.digits,
+                  row.summary.worst_5_percent);
     return kDone;
   }
   sim::JsonWriter json;
@@ -61,7 +102,7 @@ int print(const Options& options, const Y4mHeader& header, const std::vector<Fra
   for (const Row& row : rows) {
     json.begin_object(row.key);
     json.field("mean", row.summary.mean);
-    json.field("worst_5_percent", row.summary.worst);
+    json.field("worst_5_percent", row.summary.worst_5_percent);
     json.end_object();
   }
   json.end_object();
@@ -83,7 +124,8 @@ int compare_sequences(const Options& options, const NamedBytes& reference, const
   if (first->header().width != second->header().width || first->header().height != second->header().height)
     return data_error(test.path, "has frames of another size than " + reference.path);
   std::vector<FrameScores> frames;
-  Frame420 a, b;
+  Frame420 a, b, previous_a, previous_b;
+  ThreadPool pool(options.threads);
   Progress progress(options.quiet);
   while (true) {
     const auto more_a = first->next(a);
@@ -94,8 +136,10 @@ int compare_sequences(const Options& options, const NamedBytes& reference, const
       return data_error(test.path,
                         std::string("has ") + (*more_b ? "more" : "fewer") + " frames than " + reference.path);
     if (!*more_a) break;
-    frames.push_back(score(a, b));
+    frames.push_back(score(a, b, previous_a, previous_b, options.isa, pool));
     const double frame_bytes = 1.5 * a.width() * a.height() + 6;
+    std::swap(a, previous_a);
+    std::swap(b, previous_b);
     progress.show(static_cast<double>(frames.size()) * frame_bytes / static_cast<double>(reference.bytes.size()),
                   "frames");
   }
