@@ -13,6 +13,7 @@ void CoefficientSource::reset(const SourceImage& image, Subsampling subsampling,
                               bool keep_all) {
   frame_ = make_frame(image.width(), image.height(), subsampling);
   keep_all_ = keep_all;
+  kernels_ = &kernels;
   strips_.reset(frame_, image, kernels);
   const int n_strips = keep_all ? frame_.mcu_rows : 1;
   for (int c = 0; c < frame_.n_components; ++c)
@@ -33,6 +34,22 @@ void CoefficientSource::load(int mcu_row) {
     row_[c] = out[c];
   }
   if (!keep_all_) strips_.transform(mcu_row, out);
+}
+
+void CoefficientSource::quantize(int mcu_row, const BlockQuantizer (&quantizers)[2], Levels& levels) {
+  int16_t* zigzag[3] = {};
+  uint64_t* nonzero[3] = {};
+  for (int c = 0; c < frame_.n_components; ++c) {
+    zigzag[c] = levels.zigzag[c].data();
+    nonzero[c] = levels.nonzero[c].data();
+  }
+  if (!keep_all_) {
+    strips_.quantize(mcu_row, quantizers, zigzag, nonzero);
+    return;
+  }
+  load(mcu_row);
+  for (int c = 0; c < frame_.n_components; ++c)
+    kernels_->block.quantize(row_[c], quantizers[c == 0 ? 0 : 1], n_blocks(c, mcu_row), zigzag[c], nonzero[c]);
 }
 
 }  // namespace pac::jpeg

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "jpeg/block_walker.h"
 #include "jpeg/strip.h"
 
 namespace pac::jpeg {
@@ -16,6 +17,8 @@ class CoefficientSource {
   const Frame& frame() const { return frame_; }
   // Makes the blocks of that MCU row available through row(). Without keep_all: any earlier row is gone.
   void load(int mcu_row);
+  // Levels of that MCU row, rounded; row() tells nothing then without keep_all. quantizers: luma, chroma.
+  void quantize(int mcu_row, const BlockQuantizer (&quantizers)[2], Levels& levels);
   // Coefficients (scaled by 8, natural order) of the real blocks of component c in the loaded MCU row.
   const int16_t* row(int c) const { return row_[c]; }
   size_t n_blocks(int c, int mcu_row) const {
@@ -27,6 +30,7 @@ class CoefficientSource {
  private:
   Frame frame_;
   StripTransform strips_;
+  const Kernels* kernels_ = nullptr;
   bool keep_all_ = false;
   std::vector<int16_t> coefficients_[3];
   const int16_t* row_[3] = {};

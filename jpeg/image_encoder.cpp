@@ -9,8 +9,8 @@ namespace pac::jpeg {
 namespace {
 
 // Costs for every symbol that can occur, also those that did not yet: counts are scaled up and each gets one more.
-void smooth(uint64_t (&counts)[256]) {
-  constexpr uint64_t kWeight = 64;
+void smooth(uint32_t (&counts)[256]) {
+  constexpr uint32_t kWeight = 64;
   for (uint32_t symbol = 0; symbol < 256; ++symbol) {
     const uint32_t size = symbol & 15;
     if (size == 0 && symbol != 0 && symbol != 0xF0) continue;
@@ -71,20 +71,17 @@ void ImageEncoder::set_up(const QuantTables& tables, double quality) {
     levels_.zigzag[c].resize(64 * n);
     levels_.nonzero[c].resize(n);
   }
-  tokens_.clear();
   tokenizer_.reset(frame, options_.restart_interval_mcus);
 }
 
 // Levels of one MCU row, rounded or, once the costs are known, optimized.
 void ImageEncoder::quantize(int mcu_row) {
-  source_.load(mcu_row);
-  for (int c = 0; c < source_.frame().n_components; ++c) {
+  source_.quantize(mcu_row, quantizers_, levels_);
+  for (int c = 0; use_trellis_ && c < source_.frame().n_components; ++c) {
     const size_t n = source_.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
-    int16_t* levels = levels_.zigzag[c].data();
-    uint64_t* nonzero = levels_.nonzero[c].data();
-    kernels_->block.quantize(source_.row(c), quantizers_[set], n, levels, nonzero);
-    for (size_t i = 0; use_trellis_ && i < n; ++i)
-      trellis_quantize(source_.row(c) + 64 * i, weights_[set], costs_[set], levels + 64 * i, nonzero[i]);
+    for (size_t i = 0; i < n; ++i)
+      trellis_quantize(source_.row(c) + 64 * i, weights_[set], costs_[set], levels_.zigzag[c].data() + 64 * i,
+                       levels_.nonzero[c][i]);
   }
 }
 
@@ -92,14 +89,11 @@ void ImageEncoder::quantize(int mcu_row) {
 void ImageEncoder::measure_costs() {
   ScanTables tables = standard_tables();
   if (options_.huffman == Huffman::optimal) {
-    Histogram histogram;
     for (int row = 0; row < source_.frame().mcu_rows; ++row) {
       quantize(row);
-      tokens_.clear();
-      tokenizer_.add_mcu_row(row, levels_, tokens_);
-      add_to_histogram(tokens_.data(), tokens_.data() + tokens_.size(), histogram);
+      tokenizer_.add_mcu_row(row, levels_);
     }
-    tokens_.clear();
+    Histogram histogram = tokenizer_.histogram();
     tokenizer_.reset(source_.frame(), options_.restart_interval_mcus);
     smooth(histogram.count[kAc0]);
     smooth(histogram.count[kAc1]);
@@ -118,30 +112,28 @@ void ImageEncoder::write_file(const QuantTables& tables, double quality, ByteSin
     quantizers_[0] = make_quantizer(tables.luma, 0.0);
     quantizers_[1] = make_quantizer(tables.chroma, 0.0);
   }
-  const bool one_pass = options_.huffman == Huffman::standard;
   const int restart = options_.restart_interval_mcus;
+  const bool one_pass = options_.huffman == Huffman::standard;
   ScanTables scan_tables = standard_tables();
-  ScanWriter writer(sink);
   if (one_pass) {
     write_headers(source_.frame(), tables, scan_tables, restart, sink);
-    writer.set_tables(scan_tables);
+    writer_.begin(scan_tables, true, sink);
+    walker_.reset(source_.frame(), restart);
   }
   for (int row = 0; row < source_.frame().mcu_rows; ++row) {
     quantize(row);
-    tokenizer_.add_mcu_row(row, levels_, tokens_);
-    if (!one_pass) continue;
-    writer.write(tokens_.data(), tokens_.data() + tokens_.size());
-    tokens_.clear();
+    if (one_pass)
+      writer_.write_mcu_row(row, levels_, walker_);
+    else
+      tokenizer_.add_mcu_row(row, levels_);
   }
   if (!one_pass) {
-    Histogram histogram;
-    add_to_histogram(tokens_.data(), tokens_.data() + tokens_.size(), histogram);
-    scan_tables = optimal_tables(histogram);
+    scan_tables = optimal_tables(tokenizer_.histogram());
     write_headers(source_.frame(), tables, scan_tables, restart, sink);
-    writer.set_tables(scan_tables);
-    writer.write(tokens_.data(), tokens_.data() + tokens_.size());
+    writer_.begin(scan_tables, false, sink);
+    writer_.write(tokenizer_.begin(), tokenizer_.end());
   }
-  writer.finish();
+  writer_.finish();
   write_end_of_image(sink);
 }
 

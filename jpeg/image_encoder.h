@@ -33,7 +33,6 @@ class ImageEncoder {
   void set_up(const QuantTables& tables, double quality);
   void quantize(int mcu_row);
   void measure_costs();
-  void add_mcu_row(int mcu_row);
 
   EncodeOptions options_;
   const Kernels* kernels_ = nullptr;
@@ -45,7 +44,8 @@ class ImageEncoder {
   bool use_trellis_ = false;  // costs_ are known
   Levels levels_;
   Tokenizer tokenizer_;
-  std::vector<Token> tokens_;
+  BlockWalker walker_;
+  ScanWriter writer_;
 };
 
 }  // namespace pac::jpeg

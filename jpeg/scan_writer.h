@@ -1,13 +1,14 @@
-// Entropy coding [T.81 F.1.2]: quantized blocks -> tokens (a Huffman symbol with its extra bits) -> histogram -> bits.
-// Tokens let the optimal tables be made without transforming or scanning any block twice.
+// Entropy coding [T.81 F.1.2], in one of two ways: quantized blocks -> bits at once, with tables known before; or
+// blocks -> tokens (a Huffman symbol with its extra bits) and a histogram -> bits, so that optimal tables are made
+// without transforming or scanning any block twice.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
+#include "jpeg/block_walker.h"
 #include "jpeg/byte_sink.h"
-#include "jpeg/frame.h"
 #include "jpeg/huffman.h"
 
 namespace pac::jpeg {
@@ -22,16 +23,30 @@ using Token = uint32_t;
 constexpr Token kRestartToken = 0x80000000u;
 constexpr size_t kMaxTokensInBlock = 66;  // DC, 63 AC, and EOB; fewer AC make room for each ZRL
 
-struct Histogram {
-  uint64_t count[kTableCount][256] = {};
+// Grows without filling what it grows by; keeps its memory.
+class TokenBuffer {
+ public:
+  void clear() { size_ = 0; }
+  // Room for n more tokens behind the last one; what is written there counts after set_end().
+  Token* reserve(size_t n);
+  void set_end(const Token* end) { size_ = static_cast<size_t>(end - tokens_.get()); }
+  const Token* begin() const { return tokens_.get(); }
+  const Token* end() const { return tokens_.get() + size_; }
+
+ private:
+  std::unique_ptr<Token[]> tokens_;
+  size_t size_ = 0, capacity_ = 0;
 };
 
-// The tokens of one block. levels: 64 in zigzag order; bit k of `nonzero`: level k is not 0. dc_difference: DIFF,
-// within
-// +-2047. |AC| <= 1023. dc_table: kDc0 or kDc1 (its AC table follows). Returns the end of what it wrote.
-Token* tokenize_block(const int16_t* levels, uint64_t nonzero, int dc_difference, uint32_t dc_table, Token* out);
+struct Histogram {
+  uint32_t count[kTableCount][256] = {};
+};
 
-void add_to_histogram(const Token* begin, const Token* end, Histogram& histogram);
+// The tokens of one block. levels: 64 in zigzag order (null: DIFF alone); bit k of `nonzero`: level k is not 0.
+// dc_difference: DIFF, within +-2047. |AC| <= 1023. dc_table: kDc0 or kDc1 (its AC table follows). Counts them in
+// `histogram`. Returns the end of what it wrote.
+Token* tokenize_block(const int16_t* levels, uint64_t nonzero, int dc_difference, uint32_t dc_table,
+                      Histogram& histogram, Token* out);
 
 struct ScanTables {
   HuffmanSpec spec[kTableCount];
@@ -39,35 +54,26 @@ struct ScanTables {
 ScanTables standard_tables();
 ScanTables optimal_tables(const Histogram& histogram);
 
-// Writes tokens as bits with the 0xFF bytes stuffed [T.81 B.1.1.5]. Call finish() at the end of the scan.
+// Writes blocks or tokens as bits with the 0xFF bytes stuffed [T.81 B.1.1.5]. Reusable: keeps what it derived from the
+// last tables. begin(), then write_mcu_row() or write(), then finish().
 class ScanWriter {
  public:
-  explicit ScanWriter(ByteSink& sink) : sink_(sink) {}
-  // Before the first write.
-  void set_tables(const ScanTables& tables);
+  ScanWriter();
+  ScanWriter(ScanWriter&&) noexcept;
+  ScanWriter& operator=(ScanWriter&&) noexcept;
+  ~ScanWriter();
+
+  // direct: write_mcu_row() will be called, which needs larger tables.
+  void begin(const ScanTables& tables, bool direct, ByteSink& sink);
+  // As the tokens of that MCU row written. MCU rows in order, `walker` at the start of the scan before the first.
+  void write_mcu_row(int mcu_row, const Levels& levels, BlockWalker& walker);
   void write(const Token* begin, const Token* end);
   // Pads the last byte with ones [T.81 F.1.2.3].
   void finish();
 
  private:
-  static constexpr size_t kChunk = 16384;
-  static constexpr size_t kMaxFlush = 18;  // bytes that one put or flush adds at most: 8 stuffed ones, a marker
-
-  // The state of the bit buffer, in a local copy while tokens are written.
-  struct Bits {
-    uint64_t pending = 0;  // the low n_pending bits wait for the rest of their 8 bytes; above them may be old ones
-    int n_pending = 0;     // 0..64
-    uint8_t* out = nullptr;
-  };
-  static void put(Bits& bits, uint32_t value, int count);
-  static void put_bytes(Bits& bits, uint64_t value, int n_bytes);
-  static void pad_to_byte(Bits& bits);
-  void flush_chunk(Bits& bits);
-
-  uint32_t code_and_length_[kTableCount * 256] = {};
-  ByteSink& sink_;
-  Bits bits_;
-  uint8_t chunk_[kChunk + kMaxFlush];
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace pac::jpeg

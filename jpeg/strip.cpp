@@ -97,4 +97,18 @@ void StripTransform::transform(int mcu_row, int16_t* const (&out)[3]) {
   }
 }
 
+void StripTransform::quantize(int mcu_row, const BlockQuantizer (&quantizers)[2], int16_t* const (&levels)[3],
+                              uint64_t* const (&nonzero)[3]) {
+  load(mcu_row);
+  for (int c = 0; c < frame_.n_components; ++c) {
+    const Component& component = frame_.components[c];
+    const auto n_blocks = static_cast<size_t>(component.width_blocks);
+    for (int by = 0; by < rows_of_blocks(component, mcu_row); ++by) {
+      const size_t first = static_cast<size_t>(by) * n_blocks;
+      kernels_->block.fdct_quantize(planes_[c].row(8 * by), planes_[c].stride, n_blocks, quantizers[c == 0 ? 0 : 1],
+                                    levels[c] + 64 * first, nonzero[c] + first);
+    }
+  }
+}
+
 }  // namespace pac::jpeg

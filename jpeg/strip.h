@@ -32,6 +32,11 @@ class StripTransform {
   // rows of frame.components[c].width_blocks blocks, to out[c].
   void transform(int mcu_row, int16_t* const (&out)[3]);
 
+  // The same, quantized: levels in zigzag order and masks, as BlockKernels::quantize has them. quantizers: of the first
+  // component, of the others.
+  void quantize(int mcu_row, const BlockQuantizer (&quantizers)[2], int16_t* const (&levels)[3],
+                uint64_t* const (&nonzero)[3]);
+
   // Rows of real blocks that component c has in that MCU row: v, or fewer at the bottom.
   static int rows_of_blocks(const Component& c, int mcu_row);
 

@@ -1,35 +1,30 @@
-// Levels of whole MCU rows -> tokens in scan order [T.81 A.2.3, F.1.2], with DC prediction and restart markers.
+// Levels of whole MCU rows -> tokens [T.81 F.1.2].
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
-#include "jpeg/frame.h"
+#include "jpeg/block_walker.h"
 #include "jpeg/scan_writer.h"
 
 namespace pac::jpeg {
 
-// One MCU row of quantized blocks: of component c, in rows of width_blocks.
-struct Levels {
-  std::vector<int16_t> zigzag[3];    // 64 a block
-  std::vector<uint64_t> nonzero[3];  // one mask a block
-};
-
+// Tokens of MCU rows, and how often each symbol occurs. Keeps its buffer from scan to scan.
 class Tokenizer {
  public:
-  // At the start of a scan. `frame` must outlive the use.
   void reset(const Frame& frame, int restart_interval_mcus);
-  // MCU rows in order.
-  void add_mcu_row(int mcu_row, const Levels& levels, std::vector<Token>& tokens);
+  void add_mcu_row(int mcu_row, const Levels& levels);
+
+  const Token* begin() const { return tokens_.begin(); }
+  const Token* end() const { return tokens_.end(); }
+  Histogram histogram() const { return merged(counts_[0], counts_[1]); }
 
  private:
-  Token* restart_if_due(Token* out);
-  Token* add_component(int c, int mcu_row, int mcu, const Levels& levels, Token* out);
+  static Histogram merged(const Histogram& a, const Histogram& b);
 
   const Frame* frame_ = nullptr;
-  int restart_interval_ = 0, to_restart_ = 0;
-  uint32_t next_restart_ = 0;
-  int dc_[3] = {0, 0, 0};
+  BlockWalker walker_;
+  TokenBuffer tokens_;
+  Histogram counts_[2];  // of every other block: equal symbols in a row would wait for one counter
 };
 
 }  // namespace pac::jpeg

@@ -144,6 +144,46 @@ TEST_CASE("quantize: every instruction set gives the scalar bits and masks") {
   }
 }
 
+TEST_CASE("fdct_quantize: every instruction set gives what its two halves give") {
+  KernelCheck check(8192);
+  BlockQuantizer quantizer;
+  for (size_t i = 0; i < 64; ++i) {
+    quantizer.reciprocal[i] = 0x8000;
+    quantizer.scale[i] = static_cast<uint16_t>(1u << (13 - i / 8));
+    quantizer.bias[i] = static_cast<uint16_t>(i);
+  }
+  const auto run = [&](const Kernels& table, const uint8_t* samples, const SampleLayout& layout, size_t n,
+                       int16_t* levels, uint64_t* masks) {
+    table.block.fdct_quantize(samples + layout.first, layout.stride, n, quantizer, levels, masks);
+  };
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for (uint64_t seed = 0; seed < 32; ++seed) {
+      const size_t n = seed % (kMaxBlocks + 1);
+      const SampleLayout layout = layout_of(n, seed % 3 * 5, seed % 2 != 0);
+      const Guard guard = kGuards[seed / 2 % 2];
+      const uint8_t* samples =
+          check.input<uint8_t>(0, n == 0 ? 0 : layout.bytes, guard, seed * 7 % 64, pattern, 0, 255, seed);
+      check.compare<int16_t>(64 * n, guard, seed * 2 % 64, [&](const Kernels& table, int16_t* levels) {
+        uint64_t masks[kMaxBlocks] = {};
+        run(table, samples, layout, n, levels, masks);
+      });
+      check.compare<uint64_t>(n, guard, seed * 8 % 64, [&](const Kernels& table, uint64_t* masks) {
+        int16_t levels[64 * kMaxBlocks];
+        run(table, samples, layout, n, levels, masks);
+      });
+      int16_t coefficients[64 * kMaxBlocks], whole[64 * kMaxBlocks] = {}, halves[64 * kMaxBlocks] = {};
+      uint64_t masks[2][kMaxBlocks] = {};
+      const Kernels& scalar = *kernels_for(Isa::scalar);
+      scalar.block.fdct_islow(samples + layout.first, layout.stride, n, coefficients);
+      scalar.block.quantize(coefficients, quantizer, n, halves, masks[0]);
+      run(scalar, samples, layout, n, whole, masks[1]);
+      REQUIRE(std::equal(std::begin(whole), std::end(whole), std::begin(halves)));
+      REQUIRE(std::equal(std::begin(masks[0]), std::end(masks[0]), std::begin(masks[1])));
+    }
+  }
+}
+
 TEST_CASE("quantize: the mask of each single nonzero level has that zigzag bit") {
   KernelCheck check(8192);
   BlockQuantizer quantizer;

@@ -121,19 +121,24 @@ __m128i load_8(const uint8_t* p) {
   return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
 }
 
+Block fdct_pair(const uint8_t* samples, ptrdiff_t stride, bool is_pair) {
+  Block block;
+  for (int row = 0; row < 8; ++row) {
+    const uint8_t* p = samples + row * stride;
+    const __m256i words = is_pair ? _mm256_cvtepu8_epi16(load(p)) : twice(_mm_cvtepu8_epi16(load_8(p)));
+    block.v[row] = _mm256_sub_epi16(words, _mm256_set1_epi16(128));
+  }
+  block = transpose(block);
+  fdct_1d<true>(block);
+  block = transpose(block);
+  fdct_1d<false>(block);
+  return block;
+}
+
 void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16_t* coefficients) {
   for (size_t i = 0; i < n_blocks; i += 2) {
     const bool is_pair = i + 1 < n_blocks;
-    Block block;
-    for (int row = 0; row < 8; ++row) {
-      const uint8_t* p = samples + row * stride + 8 * i;
-      const __m256i words = is_pair ? _mm256_cvtepu8_epi16(load(p)) : twice(_mm_cvtepu8_epi16(load_8(p)));
-      block.v[row] = _mm256_sub_epi16(words, _mm256_set1_epi16(128));
-    }
-    block = transpose(block);
-    fdct_1d<true>(block);
-    block = transpose(block);
-    fdct_1d<false>(block);
+    const Block block = fdct_pair(samples + 8 * i, stride, is_pair);
     for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 8 * row, first_of(block.v[row]));
     if (!is_pair) return;
     for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 64 + 8 * row, second_of(block.v[row]));
@@ -252,32 +257,55 @@ Block zigzag_from_natural(const Block& b) {
            gather<7, 5, 6, 7>(b)}};
 }
 
+// Levels of two blocks in natural order.
+Block quantized(const Block& c, const BlockQuantizer& quantizer) {
+  Block block;
+  for (int row = 0; row < 8; ++row) {
+    const __m256i n = _mm256_add_epi16(_mm256_abs_epi16(c.v[row]), twice(load(quantizer.bias + 8 * row)));
+    const __m256i level = _mm256_mulhi_epu16(_mm256_mulhi_epu16(n, twice(load(quantizer.reciprocal + 8 * row))),
+                                             twice(load(quantizer.scale + 8 * row)));
+    block.v[row] = _mm256_sign_epi16(level, c.v[row]);  // c == 0 gives 0, as its level does
+  }
+  return block;
+}
+
+// To zigzag order and masks; the second block's only if it is_pair.
+void store_levels(const Block& natural, bool is_pair, int16_t* levels, uint64_t* nonzero) {
+  const Block block = zigzag_from_natural(natural);
+  uint64_t first_zeros = 0, second_zeros = 0;
+  for (int k = 0; k < 8; k += 2) {
+    const __m256i bytes = _mm256_packs_epi16(block.v[k], block.v[k + 1]);  // zero exactly where the level is
+    const auto mask = static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes, _mm256_setzero_si256())));
+    first_zeros |= static_cast<uint64_t>(mask & 0xFFFF) << 8 * k;
+    second_zeros |= static_cast<uint64_t>(mask >> 16) << 8 * k;
+  }
+  for (int k = 0; k < 8; ++k) store(levels + 8 * k, first_of(block.v[k]));
+  nonzero[0] = ~first_zeros;
+  if (!is_pair) return;
+  for (int k = 0; k < 8; ++k) store(levels + 64 + 8 * k, second_of(block.v[k]));
+  nonzero[1] = ~second_zeros;
+}
+
 void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size_t n_blocks, int16_t* levels,
               uint64_t* nonzero) {
-  for (size_t i = 0; i < n_blocks; i += 2, coefficients += 128, levels += 128) {
+  for (size_t i = 0; i < n_blocks; i += 2) {
+    const int16_t* in = coefficients + 64 * i;
     const bool is_pair = i + 1 < n_blocks;
     Block block;
     for (int row = 0; row < 8; ++row) {
-      const __m128i first = load(coefficients + 8 * row);
-      const __m256i c = is_pair ? join(first, load(coefficients + 64 + 8 * row)) : twice(first);
-      const __m256i n = _mm256_add_epi16(_mm256_abs_epi16(c), twice(load(quantizer.bias + 8 * row)));
-      const __m256i level = _mm256_mulhi_epu16(_mm256_mulhi_epu16(n, twice(load(quantizer.reciprocal + 8 * row))),
-                                               twice(load(quantizer.scale + 8 * row)));
-      block.v[row] = _mm256_sign_epi16(level, c);  // c == 0 gives 0, as its level does
+      const __m128i first = load(in + 8 * row);
+      block.v[row] = is_pair ? join(first, load(in + 64 + 8 * row)) : twice(first);
     }
-    block = zigzag_from_natural(block);
-    uint64_t first_zeros = 0, second_zeros = 0;
-    for (int k = 0; k < 8; k += 2) {
-      const __m256i bytes = _mm256_packs_epi16(block.v[k], block.v[k + 1]);  // zero exactly where the level is
-      const auto mask = static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(bytes, _mm256_setzero_si256())));
-      first_zeros |= static_cast<uint64_t>(mask & 0xFFFF) << 8 * k;
-      second_zeros |= static_cast<uint64_t>(mask >> 16) << 8 * k;
-    }
-    for (int k = 0; k < 8; ++k) store(levels + 8 * k, first_of(block.v[k]));
-    nonzero[i] = ~first_zeros;
-    if (!is_pair) return;
-    for (int k = 0; k < 8; ++k) store(levels + 64 + 8 * k, second_of(block.v[k]));
-    nonzero[i + 1] = ~second_zeros;
+    store_levels(quantized(block, quantizer), is_pair, levels + 64 * i, nonzero + i);
+  }
+}
+
+void fdct_quantize(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, const BlockQuantizer& quantizer,
+                   int16_t* levels, uint64_t* nonzero) {
+  for (size_t i = 0; i < n_blocks; i += 2) {
+    const bool is_pair = i + 1 < n_blocks;
+    store_levels(quantized(fdct_pair(samples + 8 * i, stride, is_pair), quantizer), is_pair, levels + 64 * i,
+                 nonzero + i);
   }
 }
 
@@ -287,6 +315,7 @@ void fill_block_avx2(BlockKernels& table) {
   table.fdct_islow = fdct_islow;
   table.idct_islow = idct_islow;
   table.quantize = quantize;
+  table.fdct_quantize = fdct_quantize;
 }
 
 }  // namespace pac

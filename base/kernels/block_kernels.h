@@ -49,6 +49,10 @@ struct BlockKernels {
   // position k is not zero. No alignment assumed. `levels` may not overlap `coefficients`.
   void (*quantize)(const int16_t* coefficients, const BlockQuantizer& quantizer, size_t n_blocks, int16_t* levels,
                    uint64_t* nonzero);
+
+  // fdct_islow() and then quantize() of its result, which is not kept.
+  void (*fdct_quantize)(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, const BlockQuantizer& quantizer,
+                        int16_t* levels, uint64_t* nonzero);
 };
 
 // One per instruction set: overwrites the entries that it improves.

@@ -218,12 +218,22 @@ void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size
   }
 }
 
+void fdct_quantize(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, const BlockQuantizer& quantizer,
+                   int16_t* levels, uint64_t* nonzero) {
+  for (size_t i = 0; i < n_blocks; ++i) {
+    alignas(16) int16_t coefficients[64];
+    fdct_islow(samples + 8 * i, stride, 1, coefficients);
+    quantize(coefficients, quantizer, 1, levels + 64 * i, nonzero + i);
+  }
+}
+
 }  // namespace
 
 void fill_block_neon(BlockKernels& table) {
   table.fdct_islow = fdct_islow;
   table.idct_islow = idct_islow;
   table.quantize = quantize;
+  table.fdct_quantize = fdct_quantize;
 }
 
 }  // namespace pac

@@ -88,18 +88,18 @@ PixelPairs split(__m256i bytes, int offset) {
 struct Ycc {
   __m256i y, cb, cr;  // 32-bit lanes, 0..255
 };
-// 38470 exceeds a signed 16-bit factor: 22086 of it goes with red, 16384 with blue. The factor 32768 is a shift by 15.
+// 38470 exceeds a signed 16-bit factor: 22086 of it goes with red, 16384 with blue. So does 32768, but its negative
+// fits: cb and cr are subtracted from the center with all signs turned.
 Ycc ycc_from_rgb(PixelPairs p) {
   const __m256i half = _mm256_set1_epi32(1 << 15), center = _mm256_set1_epi32((128 << 16) + (1 << 15) - 1);
   const __m256i y = _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(19595, 22086)),
                                      _mm256_madd_epi16(p.blue_green, pair(7471, 16384)));
-  const __m256i blue_15 = _mm256_srli_epi32(_mm256_slli_epi32(p.blue_green, 16), 1);
-  const __m256i red_15 = _mm256_srli_epi32(_mm256_slli_epi32(p.red_green, 16), 1);
-  const __m256i cb =
-      _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(-11059, -21709)), _mm256_add_epi32(blue_15, center));
-  const __m256i cr =
-      _mm256_add_epi32(_mm256_madd_epi16(p.blue_green, pair(-5329, -27439)), _mm256_add_epi32(red_15, center));
-  return {_mm256_srli_epi32(_mm256_add_epi32(y, half), 16), _mm256_srli_epi32(cb, 16), _mm256_srli_epi32(cr, 16)};
+  const __m256i cb = _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(11059, 21709)),
+                                      _mm256_madd_epi16(p.blue_green, pair(-32768, 0)));
+  const __m256i cr = _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(-32768, 27439)),
+                                      _mm256_madd_epi16(p.blue_green, pair(5329, 0)));
+  return {_mm256_srli_epi32(_mm256_add_epi32(y, half), 16), _mm256_srli_epi32(_mm256_sub_epi32(center, cb), 16),
+          _mm256_srli_epi32(_mm256_sub_epi32(center, cr), 16)};
 }
 
 __m256i pack(__m256i a, __m256i b, __m256i c, __m256i d) {

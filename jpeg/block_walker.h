@@ -1,0 +1,77 @@
+// Quantized blocks in scan order [T.81 A.2.3], with DC prediction and restart intervals.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "jpeg/frame.h"
+#include "jpeg/strip.h"
+
+namespace pac::jpeg {
+
+// One MCU row of quantized blocks: of component c, in rows of width_blocks.
+struct Levels {
+  std::vector<int16_t> zigzag[3];    // 64 a block
+  std::vector<uint64_t> nonzero[3];  // one mask a block
+};
+
+// Visits the blocks of a scan in order.
+class BlockWalker {
+ public:
+  // At the start of a scan. `frame` must outlive the use.
+  void reset(const Frame& frame, int restart_interval_mcus) {
+    frame_ = &frame;
+    restart_interval_ = to_restart_ = restart_interval_mcus;
+    next_restart_ = 0;
+    for (int& dc : dc_) dc = 0;
+  }
+
+  // MCU rows in order. Calls on_restart(m) where RSTm stands, and for each block
+  //   on_block(const int16_t* levels, uint64_t nonzero, int dc_difference, int table)     table 0: luma, 1: chroma.
+  // Blocks that complete an MCU past the image's edge repeat the DC before them, the cheapest to code: levels is null,
+  // nonzero and dc_difference are 0.
+  template <class OnBlock, class OnRestart>
+  void walk(int mcu_row, const Levels& levels, OnBlock&& on_block, OnRestart&& on_restart) {
+    for (int mcu = 0; mcu < frame_->mcus_per_row; ++mcu) {
+      if (restart_interval_ > 0) {
+        if (to_restart_ == 0) {
+          on_restart(next_restart_);
+          next_restart_ = (next_restart_ + 1) & 7;
+          to_restart_ = restart_interval_;
+          for (int& dc : dc_) dc = 0;
+        }
+        to_restart_ -= 1;
+      }
+      for (int c = 0; c < frame_->n_components; ++c) walk_component(c, mcu_row, mcu, levels, on_block);
+    }
+  }
+
+ private:
+  template <class OnBlock>
+  void walk_component(int c, int mcu_row, int mcu, const Levels& levels, OnBlock&& on_block) {
+    const Component& component = frame_->components[c];
+    const int n_rows = StripTransform::rows_of_blocks(component, mcu_row), table = c == 0 ? 0 : 1;
+    int dc = dc_[c];
+    for (int by = 0; by < component.v; ++by) {
+      for (int bx = mcu * component.h; bx < (mcu + 1) * component.h; ++bx) {
+        if (by >= n_rows || bx >= component.width_blocks) {
+          on_block(static_cast<const int16_t*>(nullptr), uint64_t{0}, 0, table);
+          continue;
+        }
+        const size_t i =
+            static_cast<size_t>(by) * static_cast<size_t>(component.width_blocks) + static_cast<size_t>(bx);
+        const int16_t* block = levels.zigzag[c].data() + 64 * i;
+        on_block(block, levels.nonzero[c][i], block[0] - dc, table);
+        dc = block[0];
+      }
+    }
+    dc_[c] = dc;
+  }
+
+  const Frame* frame_ = nullptr;
+  int restart_interval_ = 0, to_restart_ = 0;
+  uint32_t next_restart_ = 0;
+  int dc_[3] = {0, 0, 0};
+};
+
+}  // namespace pac::jpeg
