@@ -106,10 +106,26 @@ const uint8_t* ComponentPlanes::full_row(int c, int y) {
   return out;
 }
 
+bool ComponentPlanes::is_plain_420() const {
+  return color_ == ColorModel::ycc && planes_[0].upsampling == Upsampling::none &&
+         planes_[1].upsampling == Upsampling::h2v2 && planes_[2].upsampling == Upsampling::h2v2;
+}
+
+// Most files: upsampling and color in one kernel.
+void ComponentPlanes::write_420_row(int y, uint8_t* rgb) {
+  const int near = y / 2, far = std::clamp(near + ((y & 1) != 0 ? 1 : -1), 0, frame_.components[1].height - 1);
+  kernels_->pixel.rgb_from_ycc420_row(row(0, y), row(1, near), row(1, far), row(2, near), row(2, far),
+                                      static_cast<size_t>(frame_.width), rgb);
+}
+
 void ComponentPlanes::write_rgb(int y_begin, int y_end, RgbView out) {
   const int n = frame_.width;
   const auto size = static_cast<size_t>(n);
   for (int y = y_begin; y < y_end; ++y) {
+    if (is_plain_420()) {
+      write_420_row(y, out.row(y));
+      continue;
+    }
     Rows rows{};
     for (int c = 0; c < frame_.n_components; ++c) rows.of[c] = full_row(c, y);
     uint8_t* rgb = out.row(y);

@@ -38,6 +38,8 @@ class ComponentPlanes {
   uint8_t* row(int c, int y) { return planes_[c].samples.data() + (y % planes_[c].n_rows) * planes_[c].stride; }
   Upsampling choose(const Component& c) const;
   const uint8_t* full_row(int c, int y);
+  bool is_plain_420() const;
+  void write_420_row(int y, uint8_t* rgb);
 
   Frame frame_;
   ColorModel color_ = ColorModel::unknown;

@@ -18,14 +18,14 @@ bool starts_with(std::span<const uint8_t> data, std::span<const char> text) {
   return data.size() >= text.size() && std::memcmp(data.data(), text.data(), text.size()) == 0;
 }
 
-// Why a process other than baseline and 8-bit extended sequential with Huffman coding is refused [T.81 table B.1].
+// Why a process other than baseline, 8-bit extended sequential and progressive
+// with Huffman coding is refused [T.81 table B.1].
 const char* unsupported_process(int code) {
   switch (code) {
     case kSof0:
     case kSof1:
-      return nullptr;
     case kSof2:
-      return "progressive JPEG (SOF2) is not supported";
+      return nullptr;
     case kSof3:
       return "lossless JPEG (SOF3) is not supported";
     default:
@@ -283,11 +283,25 @@ Result<ScanHeader> HeaderReader::read_sos(const Segment& s) {
     blocks_in_mcu += frame.components[index].h * frame.components[index].v;
   }
   if (n > 1 && blocks_in_mcu > kMaxBlocksInMcu) return corrupt(s.offset, "SOS: more than 10 blocks in an MCU");
-  const size_t spectral = 1 + 2 * static_cast<size_t>(n);
-  if (s.u8(spectral) != 0 || s.u8(spectral + 1) != 63 || s.u8(spectral + 2) != 0)
-    return corrupt(s.offset + spectral, "SOS: not a full sequential scan (Ss, Se, Ah, Al)");
   scan.n_components = n;
+  PAC_CHECK(read_progression(s, scan));
   return scan;
+}
+
+// Ss, Se, Ah and Al, the last three bytes [T.81 B.2.3, G.1.1.1].
+Result<void> HeaderReader::read_progression(const Segment& s, ScanHeader& scan) const {
+  const size_t at = s.data.size() - 3;
+  const int first = s.u8(at), last = s.u8(at + 1), high = s.u8(at + 2) >> 4, low = s.u8(at + 2) & 15;
+  scan.progression = {first, last, high, low};
+  if (!headers_.is_progressive()) {
+    if (first == 0 && last == 63 && high == 0 && low == 0) return {};
+    return corrupt(s.offset + at, "SOS: not a full sequential scan (Ss, Se, Ah, Al)");
+  }
+  const bool is_band = first == 0 ? last == 0 : first <= last && last <= 63 && scan.n_components == 1;
+  if (!is_band) return corrupt(s.offset + at, "SOS: not a band of a progressive scan (Ss, Se)");
+  if (low > 13 || (high != 0 && high != low + 1))
+    return corrupt(s.offset + at + 2, "SOS: impossible bit positions of a progressive scan (Ah, Al)");
+  return {};
 }
 
 void HeaderReader::read_app(int code, const Segment& s) {

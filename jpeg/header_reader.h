@@ -9,6 +9,7 @@
 #include "jpeg/frame.h"
 #include "jpeg/huffman.h"
 #include "jpeg/jpeg.h"
+#include "jpeg/progressive.h"
 
 namespace pac::jpeg {
 
@@ -18,6 +19,7 @@ struct ScanHeader {
     int index = 0;                       // into frame.components
     uint8_t dc_table = 0, ac_table = 0;  // Td, Ta
   } components[kMaxComponents];
+  Progression progression;   // of a sequential scan: everything at once
   uint64_t offset = 0;       // of the SOS marker
   uint64_t data_offset = 0;  // of the entropy-coded data behind it
 };
@@ -31,6 +33,7 @@ struct Headers {
   HuffmanSpec huffman[2][4];  // [class: 0 DC, 1 AC][destination]
   bool have_huffman[2][4] = {};
   bool any_dht = false;
+  bool is_progressive() const { return info.start_of_frame == 0xC2; }
   int warnings = 0;  // bytes between segments that are no segment
 };
 
@@ -63,6 +66,7 @@ class HeaderReader {
   Result<void> read_sof(int code, const Segment& s);
   Result<void> check_frame(const Segment& s);
   Result<ScanHeader> read_sos(const Segment& s);
+  Result<void> read_progression(const Segment& s, ScanHeader& scan) const;
   void read_app(int code, const Segment& s);
   void finish_info();
 

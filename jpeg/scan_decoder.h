@@ -11,6 +11,7 @@
 #include "jpeg/component_planes.h"
 #include "jpeg/header_reader.h"
 #include "jpeg/jpeg.h"
+#include "jpeg/progressive.h"
 #include "jpeg/scan_reader.h"
 
 namespace pac::jpeg {
@@ -32,6 +33,9 @@ class ScanDecoder {
   int warnings() const { return warnings_ + reader_.headers().warnings; }
 
  private:
+  // MCUs whose levels are read before they are transformed: few enough to stay in the first-level cache.
+  static constexpr int kBatchMcus = 16;
+
   // What remains the same for all blocks of a component in a scan, and PRED.
   struct ScanComponent {
     const Component* component = nullptr;
@@ -41,29 +45,41 @@ class ScanDecoder {
     const HuffmanDecoder* ac_table = nullptr;
     const uint16_t* steps = nullptr;
     int dc = 0;
-    size_t blocks_per_row = 0;
-    int16_t* levels = nullptr;  // one MCU row, natural order
+    // The first block of the MCU at hand, and blocks from one row of blocks to the next: of the batch, or, if
+    // progressive, of all levels of the component.
+    size_t first_block = 0, blocks_per_row = 0;
+    int16_t* levels = nullptr;  // natural order
     uint8_t* last = nullptr;
   };
   struct Scan {
     int n_components = 0;
     ScanComponent components[kMaxComponents];
+    bool is_progressive = false;
+    Progression progression;
+    uint32_t eob_run = 0;
     int mcus_per_row = 0, mcu_rows = 0;
     int restart_interval = 0;  // MCUs, 0 = none
     int to_restart = 0;        // MCUs before the next marker
     int next_restart = 0;      // its number
+    int64_t next_mcu = 0;      // number of the next MCU
+    int64_t resume = 0;        // MCUs before this one are lost
   };
 
   Result<void> decode_scans(RgbView out);
   Result<void> set_up(const ScanHeader& header, Scan& scan);
-  Result<void> set_up_tables(const ScanHeader& header, int i, ScanComponent& sc);
+  Result<const HuffmanDecoder*> set_up_table(const ScanHeader& header, int table_class, uint8_t id);
+  Result<void> set_up_component(const ScanHeader& header, int i, ScanComponent& sc);
   Result<void> decode_scan(const ScanHeader& header, RgbView out);
-  Result<void> read_mcu(EntropyReader& reader, int mcu, Scan& scan);
-  BlockError read_blocks(EntropyReader& reader, int mcu, Scan& scan);
-  Result<void> pass_restart(EntropyReader& reader, int expected);
-  int64_t resume_at(EntropyReader& reader, int64_t failed_mcu, Scan& scan) const;
-  void transform_row(int mcu_row, const ScanComponent& sc);
-  void write_finished_rows(int mcu_row, const Scan& scan, RgbView out);
+  Result<void> decode_sequential_row(int mcu_row, Scan& scan);
+  Result<void> decode_progressive_row(int mcu_row, Scan& scan);
+  Result<void> read_next_mcu(Scan& scan);
+  Result<void> read_mcu(Scan& scan);
+  BlockError read_blocks(Scan& scan);
+  Result<void> pass_restart(int expected);
+  int64_t resume_at(int64_t failed_mcu, Scan& scan);
+  void transform_batch(int mcu_row, int first_mcu, int n_mcus, const ScanComponent& sc);
+  void transform_progressive(RgbView out);
+  void write_finished_rows(int mcu_row, int mcu_rows, int mcu_height, RgbView out);
   Result<void> tolerate(const Failure& failure);
 
   const Kernels* kernels_;
@@ -71,13 +87,16 @@ class ScanDecoder {
   HeaderReader reader_{{}, {}};
   ScanHeader first_scan_;
   bool lenient_ = false;
-  bool single_scan_ = false;  // all components in the first scan: rows go out while the scan is read
+  bool is_progressive_ = false;  // all levels are kept until the last scan
+  bool single_scan_ = false;     // all components in the first scan: rows go out while the scan is read
   bool decoded_[kMaxComponents] = {};
   uint64_t position_ = 0;  // behind the last scan's data
   std::optional<Failure> first_failure_;
   int warnings_ = 0;
   ComponentPlanes planes_;
-  HuffmanDecoder tables_[2][4];  // [class][destination]
+  EntropyReader entropy_;
+  HuffmanDecoder tables_[2][4];    // [class][destination]
+  HuffmanSpec table_specs_[2][4];  // that tables_ were made of
   uint16_t steps_[kMaxComponents][64] = {};
   std::vector<int16_t> levels_[kMaxComponents];
   std::vector<uint8_t> last_[kMaxComponents];

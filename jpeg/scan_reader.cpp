@@ -5,93 +5,172 @@
 namespace pac::jpeg {
 namespace {
 
-// A symbol whose code is longer than the look-up index, or -1 [T.81 F.2.2.3 DECODE].
-int read_long_symbol(EntropyReader& reader, const HuffmanDecoder& table) {
+// kNaturalFromZigzag, continued for runs that end past the block: what they bring goes to a 65th level.
+struct NaturalOrder {
+  uint8_t of[64 + 16];
+};
+constexpr NaturalOrder make_natural_order() {
+  NaturalOrder order{};
+  for (int k = 0; k < 80; ++k) order.of[k] = k < 64 ? kNaturalFromZigzag[k] : uint8_t{63};
+  return order;
+}
+constexpr NaturalOrder kNatural = make_natural_order();
+
+// A symbol whose code is longer than the look-up index, or -1.
+int read_long_symbol(BitWindow& bits, const HuffmanDecoder& table) {
   for (int length = HuffmanDecoder::kLookupBits + 1; length <= kMaxCodeLength; ++length) {
-    const auto code = static_cast<int32_t>(reader.peek(length));
+    const auto code = static_cast<int32_t>(bits.peek(length));
     if (code <= table.max_code[length]) {
-      reader.skip(length);
+      bits.skip(length);
       return table.symbols[(code + table.offset[length]) & 255];
     }
   }
   return -1;
 }
 
+// Appends bytes from `raw` up to the next marker, the file's end or `limit` in the buffer, without the stuffed zeros.
+struct Unstuffed {
+  const uint8_t* raw;
+  uint8_t* out;
+  bool at_marker;
+};
+Unstuffed unstuff(const uint8_t* raw, const uint8_t* file_end, uint8_t* out, const uint8_t* limit) {
+  for (;;) {
+    const ptrdiff_t room = limit - out, left = file_end - raw;
+    const ptrdiff_t n = room < left ? room : left;
+    if (n == 0) return {raw, out, left == 0};
+    const void* found = std::memchr(raw, 0xFF, static_cast<size_t>(n));
+    const ptrdiff_t plain = found != nullptr ? static_cast<const uint8_t*>(found) - raw : n;
+    std::memcpy(out, raw, static_cast<size_t>(plain));
+    raw += plain;
+    out += plain;
+    if (found == nullptr) continue;
+    if (file_end - raw < 2 || raw[1] != 0) return {raw, out, true};
+    *out++ = 0xFF;
+    raw += 2;
+  }
+}
+
 }  // namespace
 
-void EntropyReader::refill_bytewise() {
-  reservoir_ = n_bits_ > 0 ? reservoir_ >> (64 - n_bits_) << (64 - n_bits_) : 0;
-  while (n_bits_ <= 56) {
-    uint64_t byte = 0;
-    if (next_ < end_ && *next_ != 0xFF) {
-      byte = *next_++;
-    } else if (end_ - next_ >= 2 && next_[1] == 0) {
-      byte = 0xFF;
-      next_ += 2;
-    } else {
-      n_padding_bits_ += 8;
-    }
-    reservoir_ |= byte << (56 - n_bits_);
-    n_bits_ += 8;
-  }
+EntropyReader::EntropyReader()
+    : buffer_(std::make_unique_for_overwrite<uint8_t[]>(static_cast<size_t>(kChunk + kPadding))) {}
+
+void EntropyReader::start(std::span<const uint8_t> file, uint64_t offset) {
+  file_begin_ = file.data();
+  file_end_ = file.data() + file.size();
+  restart_at(offset);
+}
+
+void EntropyReader::restart_at(uint64_t offset) {
+  raw_ = file_begin_ + offset;
+  end_ = buffer_.get();
+  is_at_marker_ = false;
+  bits = {0, 0, buffer_.get()};
+  top_up();
+}
+
+// Only where no padding has been fetched yet: bits.next <= end_.
+void EntropyReader::top_up() {
+  const ptrdiff_t unread = end_ - bits.next;
+  if (unread > 0) std::memmove(buffer_.get(), bits.next, static_cast<size_t>(unread));
+  bits.next = buffer_.get();
+  const Unstuffed done = unstuff(raw_, file_end_, buffer_.get() + unread, buffer_.get() + kChunk);
+  raw_ = done.raw;
+  end_ = done.out;
+  is_at_marker_ = done.at_marker;
+  if (is_at_marker_) std::memset(done.out, 0, static_cast<size_t>(kPadding));
 }
 
 uint64_t EntropyReader::byte_offset() const {
   // Walk back over the whole unread bytes; a stuffed zero belongs to the 0xFF before it.
-  const uint8_t* at = next_;
-  for (int64_t bits = n_bits_ - n_padding_bits_; bits >= 8 && at > begin_; bits -= 8) {
+  const uint8_t* at = raw_;
+  for (ptrdiff_t bytes = end_ - bits.next + (bits.n_bits >> 3); bytes > 0 && at > file_begin_; --bytes) {
     --at;
-    if (*at == 0 && at > begin_ && at[-1] == 0xFF) --at;
+    if (*at == 0 && at > file_begin_ && at[-1] == 0xFF) --at;
   }
-  return static_cast<uint64_t>(at - begin_);
+  return static_cast<uint64_t>(at - file_begin_);
 }
 
-void EntropyReader::restart_at(uint64_t offset) {
-  next_ = begin_ + offset;
-  reservoir_ = 0;
-  n_bits_ = 0;
-  n_padding_bits_ = 0;
+int read_symbol(BitWindow& bits, const HuffmanDecoder& table) {
+  const HuffmanDecoder::Entry entry = table.lookup[bits.peek(HuffmanDecoder::kLookupBits)];
+  if (entry.length == 0) return read_long_symbol(bits, table);
+  bits.skip(entry.value != 0 ? entry.length - (entry.symbol & 15) : entry.length);
+  return entry.symbol;
 }
+
+namespace {
+
+BlockError read_dc(BitWindow& bits, const HuffmanDecoder& table, int& dc) {
+  bits.refill();
+  const HuffmanDecoder::Entry entry = table.lookup[bits.peek(HuffmanDecoder::kLookupBits)];
+  int difference = entry.value;
+  bits.skip(entry.length);
+  if (difference == 0) {
+    const int size = entry.length > 0 ? entry.symbol : read_long_symbol(bits, table);
+    if (size < 0) return BlockError::undefined_code;
+    if (size > 0) difference = extend(bits.read(size), size);
+  }
+  dc = static_cast<int16_t>(static_cast<uint16_t>(dc + difference));
+  return BlockError::none;
+}
+
+// What a look-up with value 0 stands for: EOB, ZRL, or a level whose code or extra bits are longer than the index.
+// At least 46 bits are in the window. k: the position at hand, moved behind the level read.
+enum class Step : uint8_t { level, end, undefined_code, undefined_symbol };
+Step read_rare(BitWindow& bits, const HuffmanDecoder& table, HuffmanDecoder::Entry entry, int& k, int16_t* levels) {
+  bits.skip(entry.length);
+  const int symbol = entry.length > 0 ? entry.symbol : read_long_symbol(bits, table);
+  if (symbol < 0) return Step::undefined_code;
+  const int size = symbol & 15;
+  k += symbol >> 4;
+  if (size > 0) {
+    levels[kNatural.of[k]] = static_cast<int16_t>(extend(bits.read(size), size));
+  } else if (symbol != 0xF0) {  // ZRL is sixteen zeros
+    return symbol == 0 ? Step::end : Step::undefined_symbol;
+  }
+  k += 1;
+  return Step::level;
+}
+
+}  // namespace
 
 BlockError read_block(EntropyReader& reader, const HuffmanDecoder& dc_table, const HuffmanDecoder& ac_table, int& dc,
                       int16_t* levels, uint8_t& last) {
-  last = 0;
-  reader.refill();
-  const HuffmanDecoder::Entry entry = dc_table.lookup[reader.peek(HuffmanDecoder::kLookupBits)];
-  int difference = entry.value;
-  reader.skip(entry.length);
-  if (difference == 0) {
-    const int size = entry.length > 0 ? entry.symbol : read_long_symbol(reader, dc_table);
-    if (size < 0) return BlockError::undefined_code;
-    if (size > 0) difference = extend(reader.read(size), size);
-  }
-  dc = static_cast<int16_t>(static_cast<uint16_t>(dc + difference));
+  constexpr int kBits = HuffmanDecoder::kLookupBits;
+  BitWindow bits = reader.bits;  // a copy that the compiler keeps in registers
+  BlockError error = read_dc(bits, dc_table, dc);
   levels[0] = static_cast<int16_t>(dc);
-
-  for (int k = 1; k < 64; ++k) {
-    reader.refill();
-    const HuffmanDecoder::Entry ac = ac_table.lookup[reader.peek(HuffmanDecoder::kLookupBits)];
-    int value = ac.value, symbol = ac.symbol;
-    reader.skip(ac.length);
-    if (value == 0) {
-      if (ac.length == 0) symbol = read_long_symbol(reader, ac_table);
-      if (symbol < 0) return BlockError::undefined_code;
-      const int size = symbol & 15;
-      if (size == 0) {
-        if (symbol == 0) return BlockError::none;  // EOB
-        if (symbol != 0xF0) return BlockError::undefined_symbol;
-        k += 15;  // ZRL: sixteen zeros
-        if (k >= 63) return BlockError::past_end;
+  int k = 1, end = 1;  // the next position; behind the last level
+  while (k < 64 && error == BlockError::none) {
+    bits.refill();
+    // Twice: a found level takes at most kBits of 56, and then there is enough for a rare one.
+    HuffmanDecoder::Entry entry = ac_table.lookup[bits.peek(kBits)];
+    if (entry.value != 0) {
+      k += entry.symbol >> 4;
+      bits.skip(entry.length);
+      levels[kNatural.of[k]] = entry.value;
+      end = ++k;
+      if (k >= 64) break;
+      entry = ac_table.lookup[bits.peek(kBits)];
+      if (entry.value != 0) {
+        k += entry.symbol >> 4;
+        bits.skip(entry.length);
+        levels[kNatural.of[k]] = entry.value;
+        end = ++k;
         continue;
       }
-      value = extend(reader.read(size), size);
     }
-    k += symbol >> 4;
-    if (k > 63) return BlockError::past_end;
-    levels[kNaturalFromZigzag[k]] = static_cast<int16_t>(value);
-    last = static_cast<uint8_t>(k);
+    const Step step = read_rare(bits, ac_table, entry, k, levels);
+    if (step == Step::end) break;
+    if (step == Step::undefined_code) error = BlockError::undefined_code;
+    if (step == Step::undefined_symbol) error = BlockError::undefined_symbol;
+    end = k;
   }
-  return BlockError::none;
+  reader.bits = bits;
+  if (k > 64 && error == BlockError::none) error = BlockError::past_end;
+  last = static_cast<uint8_t>(end > 64 ? 63 : end - 1);
+  return error;
 }
 
 }  // namespace pac::jpeg

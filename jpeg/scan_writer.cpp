@@ -17,7 +17,7 @@ constexpr std::array<uint32_t, 2 * kMaxValue + 2> make_value_tokens() {
   std::array<uint32_t, 2 * kMaxValue + 2> tokens{};
   for (int value = -kMaxValue; value <= kMaxValue; ++value) {
     const int magnitude = value < 0 ? -value : value;
-    const int size = std::bit_width(static_cast<uint32_t>(magnitude));
+    const auto size = static_cast<int>(std::bit_width(static_cast<uint32_t>(magnitude)));
     const int bits = value < 0 ? value + (1 << size) - 1 : value;
     tokens[static_cast<size_t>(value + kMaxValue)] = static_cast<uint32_t>(size) << 16 | static_cast<uint32_t>(bits);
   }

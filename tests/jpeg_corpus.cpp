@@ -60,7 +60,9 @@ void check_file(const std::string& path, const TempDir& dir, Counts& counts) {
   const auto theirs = decode_rgb(read_bytes(dir.file("d.pnm")));
   REQUIRE(theirs.ok());
   const int difference = max_difference(ours.ok() ? ours->view() : lenient->image.view(), theirs->view());
-  if (ours.ok()) CHECK(difference <= 1);
+  // Of a progressive file without its last scans djpeg guesses some coefficients ("block smoothing"); we do not.
+  const bool lacks_scans = path.find("progressive.truncated") != std::string::npos;
+  if (ours.ok()) CHECK(difference <= (lacks_scans ? 8 : 1));
   (!ours.ok() ? counts.lenient : difference == 0 ? counts.equal : counts.within_one) += 1;
 }
 

@@ -111,14 +111,28 @@ TEST_CASE("scans that do not fit their frame are refused") {
   require_failure(two_missing, Error::corrupt, "EOI before every component");
 }
 
-TEST_CASE("processes other than 8-bit sequential Huffman are unsupported, each by its name") {
+TEST_CASE("progressive scans that no encoder may write are refused") {
+  const auto frame = [] { return start().dqt().sof(8, 8, {{1}, {2}, {3}}, 0xC2).small_tables(); };
+  require_failure(frame().sos({{1}}, 0, 63), Error::corrupt, "not a band");
+  require_failure(frame().sos({{1}}, 5, 4), Error::corrupt, "not a band");
+  require_failure(frame().sos({{1}}, 1, 64), Error::corrupt, "not a band");
+  require_failure(frame().sos({{1}, {2}}, 1, 5), Error::corrupt, "not a band");
+  require_failure(frame().sos({{1}}, 0, 0, 0x0E), Error::corrupt, "bit positions");
+  require_failure(frame().sos({{1}}, 0, 0, 0x31), Error::corrupt, "bit positions");
+  require_failure(frame().sos({{1}}, 0, 0).bits("00").eoi(), Error::corrupt, "EOI before every component");
+  JpegFile endless = start().dqt().sof(8, 8, {{1}}, 0xC2).small_tables();
+  for (int i = 0; i < 300; ++i) endless = endless.sos({{1}}, 0, 0, 0x21).bits("0");
+  require_failure(endless.eoi(), Error::limit_exceeded, "more scans");
+}
+
+TEST_CASE("processes other than 8-bit sequential and progressive Huffman are unsupported, each by its name") {
   const struct {
     int marker, precision;
     const char* text;
-  } kProcesses[] = {{0xC2, 8, "progressive"},  {0xC3, 8, "lossless"},     {0xC5, 8, "hierarchical"},
-                    {0xC6, 8, "hierarchical"}, {0xC7, 8, "hierarchical"}, {0xC9, 8, "arithmetic"},
-                    {0xCA, 8, "arithmetic"},   {0xCB, 8, "arithmetic"},   {0xCD, 8, "arithmetic"},
-                    {0xCF, 8, "arithmetic"},   {0xC1, 12, "12-bit"},      {0xC2, 12, "progressive"}};
+  } kProcesses[] = {{0xC3, 8, "lossless"},     {0xC5, 8, "hierarchical"}, {0xC6, 8, "hierarchical"},
+                    {0xC7, 8, "hierarchical"}, {0xC9, 8, "arithmetic"},   {0xCA, 8, "arithmetic"},
+                    {0xCB, 8, "arithmetic"},   {0xCD, 8, "arithmetic"},   {0xCF, 8, "arithmetic"},
+                    {0xC1, 12, "12-bit"},      {0xC2, 12, "12-bit"}};
   for (const auto& p : kProcesses) {
     const JpegFile file = start().dqt().sof(8, 8, {{}}, p.marker, p.precision).small_tables().sos();
     require_failure(file, Error::unsupported, p.text);

@@ -112,6 +112,10 @@ constexpr const char* kVariants[] = {
     "-rgb",
     "-quality 1",
     "-quality 100 -optimize",
+    "-progressive",
+    "-progressive -sample 1x1 -restart 2B",
+    "-progressive -sample 2x1 -quality 95",
+    "-progressive -grayscale -sample 2x2",
 };
 
 TEST_CASE("we decode cjpeg's files as djpeg does, for all sampling factors, odd sizes, restarts, gray and RGB") {

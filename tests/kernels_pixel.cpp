@@ -159,5 +159,30 @@ TEST_CASE("chroma upsampling: every instruction set gives the scalar bits") {
   }
 }
 
+TEST_CASE("rgb_from_ycc420_row: every instruction set gives what upsampling and color one after the other give") {
+  KernelCheck check(8192);
+  const Kernels& scalar = *kernels_for(Isa::scalar);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(150, [&](size_t n, Guard guard, size_t shift) {
+      if (n == 0) return;
+      const size_t n_chroma = (n + 1) / 2;
+      const uint8_t* y = check.input<uint8_t>(0, n, guard, shift, pattern, 0, 255, n);
+      const uint8_t* chroma[4];
+      for (size_t i = 0; i < 4; ++i)
+        chroma[i] = check.input<uint8_t>(1 + i, n_chroma, guard, shift * (i + 2) % 64, pattern, 0, 255, n + i + 1);
+      check.compare<uint8_t>(3 * n, guard, shift, [&](const Kernels& table, uint8_t* rgb) {
+        table.pixel.rgb_from_ycc420_row(y, chroma[0], chroma[1], chroma[2], chroma[3], n, rgb);
+      });
+      std::vector<uint8_t> cb(2 * n_chroma), cr(2 * n_chroma), at_once(3 * n), in_turn(3 * n);
+      scalar.pixel.upsample_h2v2_row(chroma[0], chroma[1], n_chroma, cb.data());
+      scalar.pixel.upsample_h2v2_row(chroma[2], chroma[3], n_chroma, cr.data());
+      scalar.pixel.rgb_from_ycc_row(y, cb.data(), cr.data(), n, in_turn.data());
+      scalar.pixel.rgb_from_ycc420_row(y, chroma[0], chroma[1], chroma[2], chroma[3], n, at_once.data());
+      REQUIRE(at_once == in_turn);
+    });
+  }
+}
+
 }  // namespace
 }  // namespace pac::test

@@ -190,16 +190,56 @@ void store_row(uint8_t* p, __m128i samples, bool is_pair) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(p), samples);
 }
 
+// One dimension where inputs 4..7 are zero: half of the flow graph, its
+// rotations joined into one multiplication each.
+template <int kShift>
+void idct_1d_low(Block& x) {
+  const __m256i zero = _mm256_setzero_si256();
+  const Pairs even20 = interleave(x.v[2], zero);
+  const Wide even2 = multiply(even20, k0_541 + k0_765, 0), even3 = multiply(even20, k0_541, 0);
+  const Wide even0 = {_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, x.v[0]), 3),
+                      _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, x.v[0]), 3)};
+  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even0 + even3, a2 = even0 - even3;
+  const Pairs odd31 = interleave(x.v[3], x.v[1]);
+  const Wide b0 = multiply(odd31, k1_175 - k1_961, k1_175 - k0_899);
+  const Wide b1 = multiply(odd31, k1_175 - k2_562, k1_175 - k0_390);
+  const Wide b2 = multiply(odd31, k3_072 - k2_562 + k1_175 - k1_961, k1_175);
+  const Wide b3 = multiply(odd31, k1_175, k1_501 - k0_899 + k1_175 - k0_390);
+  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
+  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
+  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
+  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+}
+
+// Columns 0..3 of eight rows to rows 0..3; the others are not set.
+Block transpose_left(const Block& b) {
+  const __m256i a0 = _mm256_unpacklo_epi16(b.v[0], b.v[1]), a2 = _mm256_unpacklo_epi16(b.v[2], b.v[3]);
+  const __m256i a4 = _mm256_unpacklo_epi16(b.v[4], b.v[5]), a6 = _mm256_unpacklo_epi16(b.v[6], b.v[7]);
+  const __m256i c0 = _mm256_unpacklo_epi32(a0, a2), c1 = _mm256_unpackhi_epi32(a0, a2);
+  const __m256i c4 = _mm256_unpacklo_epi32(a4, a6), c5 = _mm256_unpackhi_epi32(a4, a6);
+  const __m256i zero = _mm256_setzero_si256();
+  return {{_mm256_unpacklo_epi64(c0, c4), _mm256_unpackhi_epi64(c0, c4), _mm256_unpacklo_epi64(c1, c5),
+           _mm256_unpackhi_epi64(c1, c5), zero, zero, zero, zero}};
+}
+
+// kIsLow: only the levels of the first four rows and columns are not zero.
+template <bool kIsLow>
 void idct_pair(const int16_t* levels, const uint16_t* steps, bool is_pair, uint8_t* samples, ptrdiff_t stride) {
   Block block;
-  for (int row = 0; row < 8; ++row) {
+  for (int row = 0; row < (kIsLow ? 4 : 8); ++row) {
     const __m128i first = load(levels + 8 * row);
     const __m256i both = is_pair ? join(first, load(levels + 64 + 8 * row)) : twice(first);
     block.v[row] = _mm256_mullo_epi16(both, twice(load(steps + 8 * row)));
   }
-  idct_1d<11>(block);
-  block = transpose(block);
-  idct_1d<18>(block);
+  if constexpr (kIsLow) {
+    idct_1d_low<11>(block);
+    block = transpose_left(block);
+    idct_1d_low<18>(block);
+  } else {
+    idct_1d<11>(block);
+    block = transpose(block);
+    idct_1d<18>(block);
+  }
   block = transpose(block);
   const __m256i center = _mm256_set1_epi8(static_cast<char>(0x80));  // adds 128 to a signed byte
   for (int row = 0; row < 8; row += 2) {
@@ -213,14 +253,18 @@ void idct_pair(const int16_t* levels, const uint16_t* steps, bool is_pair, uint8
 
 void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* last, size_t n_blocks, uint8_t* samples,
                 ptrdiff_t stride) {
+  constexpr int kLastLow = 9;  // zigzag positions 0..9 lie in rows and columns 0..3
   for (size_t i = 0; i < n_blocks; i += 2, levels += 128, samples += 16) {
     const bool is_pair = i + 1 < n_blocks;
-    if (last[i] == 0 && (!is_pair || last[i + 1] == 0)) {
+    const int end = is_pair && last[i + 1] > last[i] ? last[i + 1] : last[i];
+    if (end > kLastLow) {
+      idct_pair<false>(levels, steps, is_pair, samples, stride);
+    } else if (end > 0) {
+      idct_pair<true>(levels, steps, is_pair, samples, stride);
+    } else {
       const __m128i first = idct_dc(levels[0], steps[0]);
       const __m128i both = is_pair ? _mm_unpacklo_epi64(first, idct_dc(levels[64], steps[0])) : first;
       for (int y = 0; y < 8; ++y) store_row(samples + y * stride, both, is_pair);
-    } else {
-      idct_pair(levels, steps, is_pair, samples, stride);
     }
   }
 }

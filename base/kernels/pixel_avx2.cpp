@@ -152,21 +152,35 @@ Rgb offsets_from_chroma(__m256i u, __m256i v) {
 struct InterleaveMasks {
   alignas(16) int8_t mask[3][3][16];  // [vector][channel]
 };
-constexpr InterleaveMasks make_interleave_masks() {
+// even_first: the pixels come as the eight even ones, then the odd ones.
+constexpr InterleaveMasks make_interleave_masks(bool even_first) {
   InterleaveMasks masks{};
   for (int k = 0; k < 3; ++k)
     for (int channel = 0; channel < 3; ++channel)
-      for (int j = 0; j < 16; ++j)
-        masks.mask[k][channel][j] = static_cast<int8_t>((16 * k + j) % 3 == channel ? (16 * k + j) / 3 : -1);
+      for (int j = 0; j < 16; ++j) {
+        const int pixel = (16 * k + j) / 3, at = even_first ? pixel / 2 + pixel % 2 * 8 : pixel;
+        masks.mask[k][channel][j] = static_cast<int8_t>((16 * k + j) % 3 == channel ? at : -1);
+      }
   return masks;
 }
-constexpr InterleaveMasks kInterleave = make_interleave_masks();
+constexpr InterleaveMasks kInterleave = make_interleave_masks(false);
+constexpr InterleaveMasks kInterleaveEvenFirst = make_interleave_masks(true);
 
 __m256i interleave(const int8_t (&masks)[3][16], __m256i r, __m256i g, __m256i b) {
   const auto pick = [](__m256i from, const int8_t* mask) {
     return _mm256_shuffle_epi8(from, twice(_mm_load_si128(reinterpret_cast<const __m128i*>(mask))));
   };
   return _mm256_or_si256(_mm256_or_si256(pick(r, masks[0]), pick(g, masks[1])), pick(b, masks[2]));
+}
+
+// 32 pixels, 16 in each half.
+void store_rgb(const InterleaveMasks& masks, __m256i r, __m256i g, __m256i b, uint8_t* rgb) {
+  // Low halves: bytes 0..47 in order; high halves: bytes 48..95.
+  const __m256i v0 = interleave(masks.mask[0], r, g, b), v1 = interleave(masks.mask[1], r, g, b),
+                v2 = interleave(masks.mask[2], r, g, b);
+  store(rgb, _mm256_permute2x128_si256(v0, v1, 0x20));
+  store(rgb + 32, _mm256_permute2x128_si256(v2, v0, 0x30));
+  store(rgb + 64, _mm256_permute2x128_si256(v1, v2, 0x31));
 }
 
 void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, uint8_t* rgb) {
@@ -181,12 +195,7 @@ void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, u
     return _mm256_packus_epi16(_mm256_add_epi16(luma_low, a), _mm256_add_epi16(luma_high, b));
   };
   const __m256i r = channel(low.r, high.r), g = channel(low.g, high.g), b = channel(low.b, high.b);
-  // Low halves: bytes 0..47 in order; high halves: bytes 48..95.
-  const __m256i v0 = interleave(kInterleave.mask[0], r, g, b), v1 = interleave(kInterleave.mask[1], r, g, b),
-                v2 = interleave(kInterleave.mask[2], r, g, b);
-  store(rgb, _mm256_permute2x128_si256(v0, v1, 0x20));
-  store(rgb + 32, _mm256_permute2x128_si256(v2, v0, 0x30));
-  store(rgb + 64, _mm256_permute2x128_si256(v1, v2, 0x31));
+  store_rgb(kInterleave, r, g, b, rgb);
 }
 
 void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
@@ -323,6 +332,61 @@ void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_
   }
 }
 
+// Sixteen samples' upsampled neighbors less 128, the even and the odd ones, in
+// 16-bit lanes. Reads [-1] .. [16].
+struct EvenOdd {
+  __m256i even, odd;
+};
+EvenOdd centered_h2v2(const uint8_t* near, const uint8_t* far) {
+  const auto column = [near, far](ptrdiff_t at) {
+    const __m256i nearer = _mm256_cvtepu8_epi16(load_16(near + at)), farther = _mm256_cvtepu8_epi16(load_16(far + at));
+    return _mm256_add_epi16(_mm256_add_epi16(nearer, nearer), _mm256_add_epi16(nearer, farther));
+  };
+  const __m256i here = column(0), three = _mm256_add_epi16(_mm256_add_epi16(here, here), here);
+  // (sum + 8) >> 4 less 128 is (sum + 8 - 2048) >> 4.
+  const auto sixteenth = [&](__m256i other, int bias) {
+    return _mm256_srai_epi16(
+        _mm256_add_epi16(_mm256_add_epi16(three, other), _mm256_set1_epi16(static_cast<int16_t>(bias - 2048))), 4);
+  };
+  return {sixteenth(column(-1), 8), sixteenth(column(1), 7)};
+}
+
+// Reads chroma [-1] .. [16].
+void rgb_from_ycc420_step(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                          const uint8_t* cr_far, uint8_t* rgb) {
+  const EvenOdd u = centered_h2v2(cb_near, cb_far), v = centered_h2v2(cr_near, cr_far);
+  const Rgb even = offsets_from_chroma(u.even, v.even), odd = offsets_from_chroma(u.odd, v.odd);
+  const __m256i luma = load(y);
+  const __m256i luma_even = _mm256_and_si256(luma, _mm256_set1_epi16(255)), luma_odd = _mm256_srli_epi16(luma, 8);
+  const auto channel = [&](__m256i a, __m256i b) {
+    return _mm256_packus_epi16(_mm256_add_epi16(luma_even, a), _mm256_add_epi16(luma_odd, b));
+  };
+  store_rgb(kInterleaveEvenFirst, channel(even.r, odd.r), channel(even.g, odd.g), channel(even.b, odd.b), rgb);
+}
+
+void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                         const uint8_t* cr_far, size_t n, uint8_t* rgb) {
+  constexpr size_t kChroma = kStep / 2;
+  const size_t n_chroma = (n + 1) / 2;
+  for (size_t i = 0; i < n_chroma; i += kChroma) {
+    if (i > 0 && i + kChroma < n_chroma) {
+      rgb_from_ycc420_step(y + 2 * i, cb_near + i, cb_far + i, cr_near + i, cr_far + i, rgb + 6 * i);
+      continue;
+    }
+    const size_t count = n_chroma - i < kChroma ? n_chroma - i : kChroma;
+    const size_t n_pixels = n - 2 * i < kStep ? n - 2 * i : kStep;
+    const Surrounded edges[4] = {{cb_near, n_chroma, i, count},
+                                 {cb_far, n_chroma, i, count},
+                                 {cr_near, n_chroma, i, count},
+                                 {cr_far, n_chroma, i, count}};
+    uint8_t luma[kStep] = {}, edge_rgb[3 * kStep];
+    copy(luma, y + 2 * i, n_pixels);
+    rgb_from_ycc420_step(luma, edges[0].bytes + 1, edges[1].bytes + 1, edges[2].bytes + 1, edges[3].bytes + 1,
+                         edge_rgb);
+    copy(rgb + 6 * i, edge_rgb, 3 * n_pixels);
+  }
+}
+
 void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {
   const __m256i rounding = _mm256_set1_epi16(static_cast<int16_t>(bias));
   for_each_sample(near, far, out, n, [&](__m256i a, __m256i b) {
@@ -344,6 +408,7 @@ void fill_pixel_avx2(PixelKernels& table) {
   table.upsample_h2v1_row = upsample_h2v1_row;
   table.upsample_h2v2_row = upsample_h2v2_row;
   table.upsample_h1v2_row = upsample_h1v2_row;
+  table.rgb_from_ycc420_row = rgb_from_ycc420_row;
 }
 
 }  // namespace pac

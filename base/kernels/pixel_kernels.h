@@ -42,6 +42,11 @@ struct PixelKernels {
   void (*upsample_h2v1_row)(const uint8_t* in, size_t n, uint8_t* out);
   void (*upsample_h2v2_row)(const uint8_t* near, const uint8_t* far, size_t n, uint8_t* out);
   void (*upsample_h1v2_row)(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out);
+
+  // A row of 4:2:0 samples to RGB: rgb_from_ycc_row() of what upsample_h2v2_row() makes of Cb and of Cr. n >= 1 counts
+  // *pixels*; chroma rows hold (n + 1) / 2 samples.
+  void (*rgb_from_ycc420_row)(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                              const uint8_t* cr_far, size_t n, uint8_t* rgb);
 };
 
 // One per instruction set: overwrites the entries that it improves.

@@ -253,6 +253,31 @@ void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t
                   [bias](uint8x16_t a, uint8x16_t b) { return reduce<2>(three_to_one(a, b), bias); });
 }
 
+// A piece of the row at a time, through buffers: chroma with a sample more on
+// both sides, whose outputs are not used.
+void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                         const uint8_t* cr_far, size_t n, uint8_t* rgb) {
+  constexpr size_t kPiece = 96;  // chroma samples
+  const size_t n_chroma = (n + 1) / 2;
+  for (size_t i = 0; i < n_chroma; i += kPiece) {
+    const size_t count = n_chroma - i < kPiece ? n_chroma - i : kPiece;
+    const auto upsample = [&](const uint8_t* near, const uint8_t* far, uint8_t* out) {
+      uint8_t wide[2][kPiece + 2];
+      const uint8_t* rows[2] = {near, far};
+      for (int r = 0; r < 2; ++r) {
+        wide[r][0] = rows[r][i == 0 ? 0 : i - 1];
+        copy(wide[r] + 1, rows[r] + i, count);
+        wide[r][count + 1] = rows[r][i + count == n_chroma ? n_chroma - 1 : i + count];
+      }
+      upsample_h2v2_row(wide[0], wide[1], count + 2, out);
+    };
+    uint8_t cb[2 * kPiece + 4], cr[2 * kPiece + 4];
+    upsample(cb_near, cb_far, cb);
+    upsample(cr_near, cr_far, cr);
+    rgb_from_ycc_row(y + 2 * i, cb + 2, cr + 2, n - 2 * i < 2 * count ? n - 2 * i : 2 * count, rgb + 6 * i);
+  }
+}
+
 }  // namespace
 
 void fill_pixel_neon(PixelKernels& table) {
@@ -265,6 +290,7 @@ void fill_pixel_neon(PixelKernels& table) {
   table.upsample_h2v1_row = upsample_h2v1_row;
   table.upsample_h2v2_row = upsample_h2v2_row;
   table.upsample_h1v2_row = upsample_h1v2_row;
+  table.rgb_from_ycc420_row = rgb_from_ycc420_row;
 }
 
 }  // namespace pac

@@ -68,6 +68,21 @@ void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t
   for (size_t i = 0; i < n; ++i) out[i] = static_cast<uint8_t>((3 * near[i] + far[i] + bias) >> 2);
 }
 
+// Sample x of the upsampled row.
+uint8_t upsampled_h2v2(const uint8_t* near, const uint8_t* far, size_t n, size_t x) {
+  const size_t i = x / 2, next = (x & 1) == 0 ? (i == 0 ? 0 : i - 1) : (i + 1 == n ? i : i + 1);
+  return static_cast<uint8_t>((3 * (3 * near[i] + far[i]) + 3 * near[next] + far[next] + ((x & 1) == 0 ? 8 : 7)) >> 4);
+}
+
+void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                         const uint8_t* cr_far, size_t n, uint8_t* rgb) {
+  for (size_t x = 0; x < n; ++x) {
+    const uint8_t cb = upsampled_h2v2(cb_near, cb_far, (n + 1) / 2, x);
+    const uint8_t cr = upsampled_h2v2(cr_near, cr_far, (n + 1) / 2, x);
+    rgb_from_ycc_row(y + x, &cb, &cr, 1, rgb + 3 * x);
+  }
+}
+
 }  // namespace
 
 void fill_pixel_scalar(PixelKernels& table) {
@@ -80,6 +95,7 @@ void fill_pixel_scalar(PixelKernels& table) {
   table.upsample_h2v1_row = upsample_h2v1_row;
   table.upsample_h2v2_row = upsample_h2v2_row;
   table.upsample_h1v2_row = upsample_h1v2_row;
+  table.rgb_from_ycc420_row = rgb_from_ycc420_row;
 }
 
 }  // namespace pac
