@@ -167,7 +167,7 @@ Metrics measure(ConstRgbView reference, ConstRgbView test, ThreadPool* pool) {
   metrics.ssimulacra2 = ssimulacra2(reference, test, pool);
   metrics.flip = flip(reference, test, pool);
   metrics.ssim = ssim(a.view(), b.view());
-  metrics.ms_ssim = ms_ssim_luma(reference, test);
+  metrics.ms_ssim = ms_ssim(a.view(), b.view());
   for (int y = 0; y < reference.height; ++y)
     for (int i = 0; i < reference.width * 3; ++i)
       metrics.max_error = std::max(metrics.max_error, std::abs(reference.row(y)[i] - test.row(y)[i]));

@@ -39,10 +39,11 @@ double ssim_luma(ConstRgbView reference, ConstRgbView test);  // of luma_bt601
 // The SSIM of every window, at the window's center: width - 10 by height - 10 values for sides of 11 and more.
 DepthImage ssim_map(PlaneView<const uint8_t> reference, PlaneView<const uint8_t> test);
 
-// Multi-scale SSIM of luma [Wang, Simoncelli, Bovik 2003]: five scales, 2x2 means between them, contrast-structure
+// Multi-scale SSIM [Wang, Simoncelli, Bovik 2003]: five scales, 2x2 means between them, contrast-structure
 // means to the powers 0.0448, 0.2856, 0.3001, 0.2363, full SSIM of the last scale to 0.1333. Negative means count as 0.
 // Fewer scales, the exponents normalized to sum 1, where a side would fall below 11.
-double ms_ssim_luma(ConstRgbView reference, ConstRgbView test);
+double ms_ssim(PlaneView<const uint8_t> reference, PlaneView<const uint8_t> test);
+double ms_ssim_luma(ConstRgbView reference, ConstRgbView test);  // of luma_bt601
 
 // First-order entropy: -sum p log2 p over the histogram of ...
 double entropy_per_channel(ConstRgbView image);  // each channel alone, mean of the three: bits a sample, 0..8

@@ -140,23 +140,31 @@ DepthImage ssim_map(PlaneView<const uint8_t> reference, PlaneView<const uint8_t>
   return map;
 }
 
-double ms_ssim_luma(ConstRgbView reference, ConstRgbView test) {
+double ms_ssim(PlaneView<const uint8_t> reference, PlaneView<const uint8_t> test) {
   constexpr std::array<double, 5> kExponents{0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
-  GrayImage a = luma_of(reference), b = luma_of(test);
   size_t n_scales = 1;
   double exponent_sum = kExponents[0];
-  for (int side = std::min(a.width(), a.height()) / 2; n_scales < kExponents.size() && side >= kTaps; side /= 2)
+  for (int side = std::min(reference.width, reference.height) / 2; n_scales < kExponents.size() && side >= kTaps;
+       side /= 2)
     exponent_sum += kExponents[n_scales++];
   double product = 1;
+  GrayImage a, b;  // own what the views show from the second scale on
   for (size_t scale = 0; scale < n_scales; ++scale) {
-    const Similarity mean = mean_similarity(a.view(), b.view());
+    const Similarity mean = mean_similarity(reference, test);
     const bool is_last = scale + 1 == n_scales;
     product *= exact_pow(is_last ? mean.ssim : mean.contrast_structure, kExponents[scale] / exponent_sum);
     if (is_last) break;
-    a = halve(a.view());
-    b = halve(b.view());
+    a = halve(reference);
+    b = halve(test);
+    reference = a.view();
+    test = b.view();
   }
   return product;
+}
+
+double ms_ssim_luma(ConstRgbView reference, ConstRgbView test) {
+  const GrayImage a = luma_of(reference), b = luma_of(test);
+  return ms_ssim(a.view(), b.view());
 }
 
 }  // namespace pac

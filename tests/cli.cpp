@@ -364,6 +364,7 @@ TEST_CASE("metrics compares sequences frame by frame") {
   CHECK(number(scores, "ssimulacra2.mean") < 100);
   CHECK(number(scores, "flip.worst_5_percent") >= number(scores, "flip.mean"));
   CHECK(number(scores, "psnr_hvs_m_db.mean") > 20);
+  CHECK(number(scores, "ms_ssim.mean") < 1);
   const CliRun shorter = folder.pac("metrics a.y4m short.y4m");
   CHECK(shorter.code == 1);
   CHECK(contains(shorter.err, "fewer frames"));

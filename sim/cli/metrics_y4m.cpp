@@ -21,7 +21,8 @@ namespace pac::cli {
 namespace {
 
 struct FrameScores {
-  double rms_luma = 0, psnr_luma_db = 0, psnr_hvs_m_db = 0, ssim = 0, ssimulacra2 = 0, flip = 0;
+  double rms_luma = 0, psnr_luma_db = 0, psnr_hvs_db = 0, psnr_hvs_m_db = 0;
+  double ssim = 0, ms_ssim = 0, ssimulacra2 = 0, flip = 0;
   double cambi = 0;    // of the test
   double flicker = 0;  // of the change from the frame before
 };
@@ -51,8 +52,11 @@ FrameScores score(const Frame420& reference, const Frame420& test, const Frame42
   FrameScores scores;
   scores.rms_luma = std::sqrt(error);
   scores.psnr_luma_db = psnr_from_mse(error);
-  scores.psnr_hvs_m_db = psnr_hvs(reference.y.view(), test.y.view()).psnr_hvs_m_db;
+  const PsnrHvs hvs = psnr_hvs(reference.y.view(), test.y.view());
+  scores.psnr_hvs_db = hvs.psnr_hvs_db;
+  scores.psnr_hvs_m_db = hvs.psnr_hvs_m_db;
   scores.ssim = ssim(reference.y.view(), test.y.view());
+  scores.ms_ssim = ms_ssim(reference.y.view(), test.y.view());
   scores.ssimulacra2 = ssimulacra2(a.view(), b.view(), &pool);
   scores.flip = flip(a.view(), b.view(), &pool);
   scores.cambi = cambi(test.y.view());
@@ -81,8 +85,10 @@ int print(const Options& options, const Y4mHeader& header, const std::vector<Fra
   const Row rows[] = {
       {"rms_luma", "rms, luma (levels)", summarize(frames, &FrameScores::rms_luma, Better::smaller), 4},
       {"psnr_luma_db", "PSNR, luma (dB)", summarize(frames, &FrameScores::psnr_luma_db, Better::larger), 3},
+      {"psnr_hvs_db", "PSNR-HVS (dB)", summarize(frames, &FrameScores::psnr_hvs_db, Better::larger), 3},
       {"psnr_hvs_m_db", "PSNR-HVS-M (dB)", summarize(frames, &FrameScores::psnr_hvs_m_db, Better::larger), 3},
       {"ssim", "SSIM, luma", summarize(frames, &FrameScores::ssim, Better::larger), 5},
+      {"ms_ssim", "MS-SSIM, luma", summarize(frames, &FrameScores::ms_ssim, Better::larger), 5},
       {"ssimulacra2", "SSIMULACRA 2.1", summarize(frames, &FrameScores::ssimulacra2, Better::larger), 3},
       {"flip", "FLIP, mean", summarize(frames, &FrameScores::flip, Better::smaller), 5},
       {"cambi", "banding (CAMBI)", summarize(frames, &FrameScores::cambi, Better::smaller), 3},
