@@ -40,13 +40,19 @@ FrameRenderer::FrameRenderer(raster::Renderer renderer, const SceneSet& scene, c
       height_(height),
       isa_(isa) {}
 
-Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::Camera& camera) {
+Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::Camera& camera, bool with_geometry) {
   FrameImages images;
+  if (with_geometry) {
+    images.depth = DepthImage(width_, height_);
+    images.id = IdImage(width_, height_);
+  }
   images.high = RgbImage(width_, height_);
   images.low = RgbImage(width_, height_);
   images.difference = RgbImage(width_, height_);
-  const raster::RenderTargets high{images.high.view(), {}, {}};
+  raster::RenderTargets high{images.high.view(), {}, {}};
   if (!transmit_model_ && split_.single_pass()) {
+    high.depth = images.depth.view();  // L's, too: both see the same triangles at the same samples
+    high.id = images.id.view();
     PAC_CHECK(renderer_.render_pair(scene.fine, camera, split_.high, split_.low, high, images.low.view(),
                                     images.difference.view()));
     return images;
@@ -59,7 +65,8 @@ Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::C
 
 Result<void> FrameRenderer::draw_low(const raster::Camera& camera, FrameImages& images) {
   if (!transmit_model_) {
-    PAC_CHECK(renderer_.render(low_scene_, camera, split_.low, {images.low.view(), {}, {}}));
+    PAC_CHECK(
+        renderer_.render(low_scene_, camera, split_.low, {images.low.view(), images.depth.view(), images.id.view()}));
     return {};
   }
   PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_));

@@ -15,6 +15,8 @@ namespace pac::sim {
 struct FrameImages {
   RgbImage high, low, difference;
   ScreenModel model;  // empty where the model is resident
+  DepthImage depth;   // of L, as raster::RenderTargets; empty unless asked for
+  IdImage id;
 };
 
 // What the server and the experiments share. One object, one thread at a time.
@@ -26,7 +28,8 @@ class FrameRenderer {
                                       int height, int threads, Isa isa);
 
   // `scene` is the one given to create(). Fails as Renderer::render and encode_screen_model.
-  Result<FrameImages> render(const SceneSet& scene, const raster::Camera& camera);
+  // with_geometry: depth and ids of L as well (resident models only).
+  Result<FrameImages> render(const SceneSet& scene, const raster::Camera& camera, bool with_geometry = false);
 
   const raster::Scene& low_scene() const { return low_scene_; }
   raster::Renderer& renderer() { return renderer_; }

@@ -55,12 +55,21 @@ const ServerFrame& Server::last_frame() const {
 }
 
 Result<Bytes> Server::frame(uint32_t frame_number, const raster::Camera& camera) {
+  PAC_TRY(FrameImages images, render(camera));
+  return send(frame_number, camera, std::move(images), state_->options.target_bytes);
+}
+
+Result<FrameImages> Server::render(const raster::Camera& camera) {
+  return state_->renderer.render(state_->scene, camera);
+}
+
+Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, FrameImages images,
+                           uint64_t target_bytes) {
   const ServerOptions& options = state_->options;
-  PAC_TRY(FrameImages images, state_->renderer.render(state_->scene, camera));
   const ConstRgbView difference = images.difference.view();
   PAC_TRY(const CodedImage coded,
-          options.target_bytes > 0 ? code_at_size(difference, Content::difference, options.target_bytes, options.coding)
-                                   : code_at_quality(difference, Content::difference, options.quality, options.coding));
+          target_bytes > 0 ? code_at_size(difference, Content::difference, target_bytes, options.coding)
+                           : code_at_quality(difference, Content::difference, options.quality, options.coding));
   PAC_TRY(const RgbImage decoded, jpeg::decode(coded.bytes, {}, options.isa));
 
   FramePacket packet;

@@ -10,6 +10,7 @@
 #include "base/isa.h"
 #include "base/result.h"
 #include "raster/scene.h"
+#include "sim/frame_renderer.h"
 #include "sim/match.h"
 #include "sim/scenes.h"
 #include "sim/split.h"
@@ -47,8 +48,14 @@ class Server {
   // The session message: sent once, before any frame. Holds the resident model, or only size and quality.
   const Bytes& session() const;
 
-  // Renders, subtracts, codes: one packet. `frame_number` is free.
+  // Renders, subtracts, codes: one packet. `frame_number` is free. The same as render() and send() with
+  // options.target_bytes.
   Result<Bytes> frame(uint32_t frame_number, const raster::Camera& camera);
+
+  // The two halves of frame(), for a caller who decides on the size once H is seen. target_bytes > 0: of the
+  // difference.
+  Result<FrameImages> render(const raster::Camera& camera);
+  Result<Bytes> send(uint32_t frame_number, const raster::Camera& camera, FrameImages images, uint64_t target_bytes);
 
   const ServerFrame& last_frame() const;
 

@@ -7,6 +7,7 @@
 #include "base/kernels/motion_kernels.h"
 #include "base/kernels/pixel_kernels.h"
 #include "base/kernels/tile_kernels.h"
+#include "base/kernels/warp_kernels.h"
 
 namespace pac {
 
@@ -16,6 +17,7 @@ struct Kernels {
   MotionKernels motion;  // block distances, prediction, transforms of prediction errors
   PixelKernels pixel;    // color conversion, chroma resampling, difference and composite
   TileKernels tile;      // rasterization inside one tile
+  WarpKernels warp;      // reprojection from the frame before
 };
 
 // The table of best_isa(). One atomic load after the first call; thread-safe.

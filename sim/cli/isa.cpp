@@ -68,6 +68,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, sample_texture),
     PAC_KERNEL(tile, accumulate),
     PAC_KERNEL(tile, resolve_row),
+    PAC_KERNEL(warp, reproject_row),
+    PAC_KERNEL(warp, filter_points),
 };
 
 // The first instruction set, in ascending order, whose table holds the same function: its file exports it.

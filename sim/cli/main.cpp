@@ -19,6 +19,7 @@ constexpr Command kCommands[] = {
     {"demo", "the paper's experiments on the built-in scenes, as a page and Table I", run_demo},
     {"render", "draws one picture of a scene", run_render},
     {"compare", "one still, image-based and polygon-assisted at matched bytes", run_compare},
+    {"animate", "a sequence, image-based and polygon-assisted at matched bytes", run_animate},
     {"jpeg encode", "writes a baseline JPEG file", run_jpeg_encode},
     {"jpeg decode", "writes a JPEG file's picture as PNG, PPM or PGM", run_jpeg_decode},
     {"jpeg info", "markers, frame, tables, estimated quality, metadata", run_jpeg_info},

@@ -1,0 +1,73 @@
+// A sequence through both arms [Levoy95 s.3, last paragraph]: video of H against polygon-assisted video at matched
+// bytes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "base/file_io.h"
+#include "base/result.h"
+#include "sim/experiment.h"
+#include "sim/match.h"
+#include "sim/scenes.h"
+#include "sim/video_scores.h"
+
+namespace pac::sim {
+
+enum class VideoCodec : uint8_t { mjpeg };
+
+// Frame number (from 0) and aspect (width / height) to camera.
+using CameraPath = std::function<raster::Camera(int frame, float aspect)>;
+
+struct AnimationOptions {
+  RenderOptions render;  // split, size, samples, threads, isa; transmit_model as for stills
+  CodingOptions coding;
+  int frames = 48;  // >= 1
+  VideoCodec codec = VideoCodec::mjpeg;
+  double quality = 15;  // mjpeg: of each image-based frame, (0, 100]; D is matched to that frame's bytes
+};
+
+// One arm's frame.
+struct ArmFrame {
+  uint64_t bytes = 0;  // of the code: JPEG file or MPEG picture, and the model where it is transmitted
+  double quality = 0;  // coded quality
+  FrameScores scores{};
+};
+
+struct VideoArm {
+  std::vector<ArmFrame> frames;
+  uint64_t bytes = 0;  // of all frames
+};
+
+struct Animation {
+  Split split;
+  int width = 0, height = 0;
+  VideoArm image_based, polygon_assisted;
+  uint64_t resident_model_bytes = 0;  // the session message, once
+  uint64_t packet_bytes = 0;          // of all frame packets: code, camera, hash, CRC
+};
+
+// One frame as it passes by; everything is valid during the call only.
+struct AnimationFrame {
+  int number = 0;
+  const RgbImage& high;
+  const RgbImage& image_based;  // as shown
+  const RgbImage& composite;    // as the client shows it
+  std::span<const uint8_t> image_code;
+  std::span<const uint8_t> difference_code;
+  std::span<const uint8_t> packet;
+};
+
+struct AnimationSink {
+  std::function<void(std::span<const uint8_t> session)> session;  // once, before the first frame; may be empty
+  std::function<void(const AnimationFrame& frame)> frame;         // may be empty
+};
+
+// Renders, codes both arms, sends the packets to a client, scores what both show. The client sees nothing but bytes;
+// corrupt where its picture is not the one that the server predicted. Fails as Server::create and Client::receive, and
+// with bad_argument.
+Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
+                                const AnimationSink& sink = {});
+
+}  // namespace pac::sim

@@ -1,0 +1,32 @@
+// What `pac animate -o DIR` leaves behind.
+#pragma once
+
+#include <string>
+
+#include "sim/animation.h"
+
+namespace pac::cli {
+
+// DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them), session.pacs, and the sequences
+// H.y4m, image.y4m, composite.y4m. Collected in memory, written at the end.
+class AnimationFiles {
+ public:
+  // An empty folder name: nothing is kept or written.
+  AnimationFiles(std::string folder, int fps, Isa isa);
+
+  // Makes the folder. kDone, or kBadData after the message; so does write().
+  int open() const;
+  void add_session(std::span<const uint8_t> session);
+  void add_frame(const sim::AnimationFrame& frame);
+  int write() const;
+
+ private:
+  void add_picture(Bytes& sequence, const RgbImage& picture) const;
+
+  std::string folder_;
+  int fps_;
+  Isa isa_;
+  Bytes image_, difference_, pacs_, high_y4m_, image_y4m_, composite_y4m_;
+};
+
+}  // namespace pac::cli

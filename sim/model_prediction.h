@@ -1,0 +1,95 @@
+// Model prediction: the difference that was decoded for the frame before, carried to where the model says that its
+// surfaces are now. Server and client run the same code on the same numbers.
+//
+//   depth, cameras -> flow -> visibility (surface and depth) -> filter -> carried difference -> + base -> reference
+//   coded picture - base -> difference, kept for the next frame
+// The base is the client's own rendering L (so that the reference predicts H itself), or gray (the paper's D form). All
+// in 4:2:0; chroma is carried at its own resolution. Where the frame before does not show the surface, the carried
+// difference is 0: the reference is the base.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/image.h"
+#include "base/isa.h"
+#include "raster/scene.h"
+#include "sim/reprojection.h"
+
+namespace pac::sim {
+
+// A plane of 16-bit samples with a border of kWarpBorder on all sides that repeats the edge.
+class BorderedPlane {
+ public:
+  static constexpr int kBorder = 8;
+  BorderedPlane() = default;
+  BorderedPlane(int width, int height) : image_(width + 2 * kBorder, height + 2 * kBorder) {}
+  int width() const { return image_.width() - 2 * kBorder; }
+  int height() const { return image_.height() - 2 * kBorder; }
+  ptrdiff_t stride() const { return image_.stride(); }
+  int16_t* row(int y) { return image_.row(y + kBorder) + kBorder; }
+  const int16_t* row(int y) const { return image_.row(y + kBorder) + kBorder; }
+  void extend();  // fills the border
+
+ private:
+  Image<int16_t, 1> image_;
+};
+
+// Which surface each pixel shows, at the resolution of one component.
+struct SurfaceMap {
+  IdImage surface;   // 0 = background
+  DepthImage u;      // 1 - depth
+  GrayImage smooth;  // 1: the 6x6 taps around all lie on this surface, without a jump in depth
+};
+
+// Faces to surfaces: one number a material, so that differences flow across the edges of a mesh but not from one
+// material to another. Index = id of the rasterizer (face + 1); [0] is the background.
+std::vector<uint32_t> surfaces_of(const raster::Scene& low);
+
+struct PredictionStats {
+  double carried_share = 0;  // of the luma samples: found in the frame before
+};
+
+// One object, one thread at a time.
+class ModelPredictor {
+ public:
+  // `surfaces`: surfaces_of() the scene that L draws; sample_x, sample_y: where in a pixel the rasterizer takes depth
+  // and id, 0..1.
+  ModelPredictor(int width, int height, std::vector<uint32_t> surfaces, double sample_x, double sample_y,
+                 Isa isa = best_isa());
+
+  // The reference picture for a frame with that base, depth and ids of L, and camera. After the first call and after
+  // forget() it is the base itself. Valid until the next call.
+  const Frame420& reference(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id,
+                            const raster::Camera& camera);
+
+  // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
+  void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr, const Frame420& base);
+
+  // The kept difference: luma and chroma.
+  const BorderedPlane& difference(int component) const { return kept_[component]; }
+
+  // The next reference is the base: after a loss, or for a frame that must stand alone.
+  void forget() { has_kept_ = false; }
+
+  const PredictionStats& stats() const { return stats_; }
+
+ private:
+  struct Points;  // of the plain filter
+  void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma, SurfaceMap& chroma);
+  void carry(int component, const Frame420& base);
+
+  int width_, height_;
+  std::vector<uint32_t> surfaces_;
+  double sample_x_, sample_y_;
+  Isa isa_;
+  bool has_kept_ = false;
+  raster::Camera camera_;
+  Flow flow_;
+  SurfaceMap now_[2], before_[2];  // luma, chroma
+  BorderedPlane kept_[3];
+  Frame420 reference_;
+  PredictionStats stats_;
+};
+
+}  // namespace pac::sim

@@ -1,0 +1,120 @@
+#include "sim/reprojection.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/kernels/kernels.h"
+
+namespace pac::sim {
+
+namespace {
+
+struct Matrix {
+  double at[4][4] = {};
+};
+
+Matrix operator*(const Matrix& a, const Matrix& b) {
+  Matrix product;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c)
+      product.at[r][c] =
+          ((a.at[r][0] * b.at[0][c] + a.at[r][1] * b.at[1][c]) + a.at[r][2] * b.at[2][c]) + a.at[r][3] * b.at[3][c];
+  return product;
+}
+
+Matrix matrix_of(const raster::Camera& camera) {
+  Matrix matrix;
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) matrix.at[r][c] = static_cast<double>(camera.clip_from_world[c][r]);
+  return matrix;
+}
+
+void swap_rows(Matrix& matrix, int a, int b) {
+  for (int c = 0; c < 4; ++c) std::swap(matrix.at[a][c], matrix.at[b][c]);
+}
+
+// Gauss-Jordan with the largest pivot. A singular matrix gives numbers that are not finite, hence kWarpNowhere.
+Matrix inverse(Matrix m) {
+  Matrix result;
+  for (int i = 0; i < 4; ++i) result.at[i][i] = 1;
+  for (int column = 0; column < 4; ++column) {
+    int pivot = column;
+    for (int r = column + 1; r < 4; ++r)
+      if (std::fabs(m.at[r][column]) > std::fabs(m.at[pivot][column])) pivot = r;
+    swap_rows(m, pivot, column);
+    swap_rows(result, pivot, column);
+    const double divisor = m.at[column][column];
+    for (int c = 0; c < 4; ++c) {
+      m.at[column][c] = m.at[column][c] / divisor;
+      result.at[column][c] = result.at[column][c] / divisor;
+    }
+    for (int r = 0; r < 4; ++r) {
+      if (r == column) continue;
+      const double factor = m.at[r][column];
+      for (int c = 0; c < 4; ++c) {
+        m.at[r][c] -= factor * m.at[column][c];
+        result.at[r][c] -= factor * result.at[column][c];
+      }
+    }
+  }
+  return result;
+}
+
+// Clip space / w of pixel index (x, y) at u = 1 - window z.
+Matrix clip_from_pixel(int width, int height, double sample_x, double sample_y) {
+  Matrix matrix;
+  matrix.at[0][0] = 2.0 / width;
+  matrix.at[0][3] = 2.0 * sample_x / width - 1.0;
+  matrix.at[1][1] = -2.0 / height;
+  matrix.at[1][3] = 1.0 - 2.0 * sample_y / height;
+  matrix.at[2][2] = -2.0;
+  matrix.at[2][3] = 1.0;
+  matrix.at[3][3] = 1.0;
+  return matrix;
+}
+
+// Its inverse on homogeneous coordinates.
+Matrix pixel_from_clip(int width, int height, double sample_x, double sample_y) {
+  Matrix matrix;
+  matrix.at[0][0] = 0.5 * width;
+  matrix.at[0][3] = 0.5 * width - sample_x;
+  matrix.at[1][1] = -0.5 * height;
+  matrix.at[1][3] = 0.5 * height - sample_y;
+  matrix.at[2][2] = -0.5;
+  matrix.at[2][3] = 0.5;
+  matrix.at[3][3] = 1.0;
+  return matrix;
+}
+
+}  // namespace
+
+Reprojection::Reprojection(const raster::Camera& from, const raster::Camera& to, int width, int height, double sample_x,
+                           double sample_y) {
+  const Matrix all = (pixel_from_clip(width, height, sample_x, sample_y) * matrix_of(to)) *
+                     (inverse(matrix_of(from)) * clip_from_pixel(width, height, sample_x, sample_y));
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) matrix_[r][c] = all.at[r][c];
+}
+
+ReprojectionRow Reprojection::row(int y) const {
+  ReprojectionRow row;
+  for (int c = 0; c < 4; ++c) {
+    row.origin[c] = static_cast<float>(matrix_[c][3] + matrix_[c][1] * y);
+    row.per_pixel[c] = static_cast<float>(matrix_[c][0]);
+    row.per_depth[c] = static_cast<float>(matrix_[c][2]);
+  }
+  return row;
+}
+
+void reproject(const Reprojection& reprojection, PlaneView<const float> depth, Flow& flow, Isa isa) {
+  if (flow.x_64.width() != depth.width || flow.x_64.height() != depth.height)
+    flow = {Image<int32_t, 1>(depth.width, depth.height), Image<int32_t, 1>(depth.width, depth.height),
+            DepthImage(depth.width, depth.height)};
+  const Kernels* table = kernels_for(isa);
+  PAC_ASSERT(table != nullptr);
+  for (int y = 0; y < depth.height; ++y)
+    table->warp.reproject_row(reprojection.row(y), depth.row(y), static_cast<size_t>(depth.width), flow.x_64.row(y),
+                              flow.y_64.row(y), flow.u_before.row(y));
+}
+
+}  // namespace pac::sim
