@@ -126,7 +126,7 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
 }
 
 PictureType Encoder::State::choose_type(const PictureOptions& picture) const {
-  if (!in_sequence) return PictureType::I;
+  if (!in_sequence && !(picture.type == PictureType::P && picture.reference != nullptr)) return PictureType::I;
   if (picture.type) return *picture.type;
   return temporal_reference >= options.gop_length ? PictureType::I : PictureType::P;
 }
@@ -228,7 +228,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
   if (const char* problem = problem_with_picture(frame, picture)) return Failure{Error::bad_argument, 0, problem};
   const size_t before = out.size();
   const PictureType type = choose_type(picture);
-  if (type == PictureType::I) start_group(out);
+  if (type == PictureType::I || !in_sequence) start_group(out);
   fill_planes(view_of(frame), Planes::of(source));
   const double scale = set_quantizers(picture);
   code_picture(make_task(type, picture));

@@ -1,13 +1,11 @@
 #include "sim/animation.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "jpeg/jpeg.h"
-#include "sim/client.h"
+#include "sim/animation_parts.h"
 #include "sim/packet.h"
-#include "sim/server.h"
 
 namespace pac::sim {
 
@@ -17,6 +15,10 @@ Result<void> check(const AnimationOptions& options) {
   if (options.frames < 1) return Failure{Error::bad_argument, 0, "a sequence has at least one frame"};
   if (!(options.quality > 0 && options.quality <= 100))
     return Failure{Error::bad_argument, 0, "quality must be in (0, 100]"};
+  if (options.frames_per_second < 1 || options.frames_per_second > 60)
+    return Failure{Error::bad_argument, 0, "frames a second must be 1..60"};
+  if (options.codec == VideoCodec::mpeg1 && options.render.transmit_model)
+    return Failure{Error::bad_argument, 0, "MPEG-1 video is coded against a model that is resident"};
   return {};
 }
 
@@ -33,42 +35,65 @@ bool same_picture(const RgbImage& a, const RgbImage& b) {
 }
 
 // Motion JPEG: every frame a file of its own, D matched to the size of H's.
-class JpegAnimation {
- public:
-  JpegAnimation(Server server, Client client, const AnimationOptions& options, const AnimationSink& sink)
-      : server_(std::move(server)), client_(std::move(client)), options_(options), sink_(sink) {}
-
-  Result<void> frame(int number, const raster::Camera& camera, Animation& out) {
-    PAC_TRY(FrameImages images, server_.render(camera));
+Result<void> run_mjpeg(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
+                       const AnimationSink& sink, Animation& out) {
+  PAC_TRY(Server server, Server::create(std::move(scene), out.split, server_options_for(options, out)));
+  PAC_TRY(Client client, Client::create(server.session(), client_options_for(options)));
+  out.resident_model_bytes = options.render.transmit_model ? 0 : server.session().size();
+  if (sink.session) sink.session(server.session());
+  const float aspect = static_cast<float>(out.width) / static_cast<float>(out.height);
+  for (int number = 0; number < options.frames; ++number) {
+    const raster::Camera camera = path(number, aspect);
+    PAC_TRY(FrameImages images, server.render(camera));
     PAC_TRY(const CodedImage coded,
-            code_at_quality(images.high.view(), Content::image, options_.quality, options_.coding));
-    PAC_TRY(const RgbImage shown, jpeg::decode(coded.bytes, {}, options_.coding.isa));
+            code_at_quality(images.high.view(), Content::image, options.quality, options.coding));
+    PAC_TRY(const RgbImage shown, jpeg::decode(coded.bytes, {}, options.coding.isa));
     PAC_TRY(const Bytes packet,
-            server_.send(static_cast<uint32_t>(number), camera, std::move(images), coded.bytes.size()));
-    PAC_TRY(const RgbImage composite, client_.receive(packet));
-    const ServerFrame& sent = server_.last_frame();
-    if (!same_picture(composite, sent.composite))
-      return Failure{Error::corrupt, static_cast<uint64_t>(number), "the client shows another picture"};
-
-    const ScoredPair pairs[] = {{sent.high.view(), shown.view()}, {sent.high.view(), composite.view()}};
-    const std::vector<FrameScores> scores = score_frames(pairs, options_.render.threads);
-    add_frame(out.image_based, coded.bytes.size(), coded.quality, scores[0]);
-    add_frame(out.polygon_assisted, sent.difference_bytes + sent.model_bytes, sent.quality, scores[1]);
-    out.packet_bytes += packet.size();
-    if (!sink_.frame) return {};
-    PAC_TRY(const FramePacket fields, read_frame_packet(packet));
-    sink_.frame({number, sent.high, shown, composite, coded.bytes, fields.difference, packet});
-    return {};
+            server.send(static_cast<uint32_t>(number), camera, std::move(images), coded.bytes.size()));
+    PAC_CHECK(show_frame(number, options, sink, {coded.bytes, coded.quality, shown}, server, client, packet, out));
   }
-
- private:
-  Server server_;
-  Client client_;
-  const AnimationOptions& options_;
-  const AnimationSink& sink_;
-};
+  return {};
+}
 
 }  // namespace
+
+ServerOptions server_options_for(const AnimationOptions& options, const Animation& out) {
+  ServerOptions server;
+  server.width = out.width;
+  server.height = out.height;
+  server.transmit_model = options.render.transmit_model;
+  server.coding = options.coding;
+  server.threads = options.render.threads;
+  server.isa = options.render.isa;
+  return server;
+}
+
+ClientOptions client_options_for(const AnimationOptions& options) {
+  ClientOptions client;
+  client.threads = options.render.threads;
+  client.isa = options.render.isa;
+  return client;
+}
+
+Result<void> show_frame(int number, const AnimationOptions& options, const AnimationSink& sink,
+                        const ImageArmFrame& image, const Server& server, Client& client, const Bytes& packet,
+                        Animation& out) {
+  PAC_TRY(const RgbImage composite, client.receive(packet));
+  const ServerFrame& sent = server.last_frame();
+  if (!same_picture(composite, sent.composite))
+    return Failure{Error::corrupt, static_cast<uint64_t>(number), "the client shows another picture"};
+  const ScoredPair pairs[] = {{sent.high.view(), image.shown.view()}, {sent.high.view(), composite.view()}};
+  const std::vector<FrameScores> scores = score_frames(pairs, options.render.threads);
+  add_frame(out.image_based, image.code.size(), image.quality, scores[0]);
+  add_frame(out.polygon_assisted, sent.difference_bytes + sent.model_bytes, sent.quality, scores[1]);
+  out.packet_bytes += packet.size();
+  if (!sink.frame) return {};
+  PAC_TRY(const FramePacket fields, read_frame_packet(packet));
+  // Behind the byte that says how it is predicted, a video frame is MPEG-1.
+  const auto code = fields.codec == Codec::mpeg1 ? fields.difference.subspan(1) : fields.difference;
+  sink.frame({number, sent.high, image.shown, composite, image.code, code, packet});
+  return {};
+}
 
 Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
                                 const AnimationSink& sink) {
@@ -79,24 +104,11 @@ Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const An
   out.height = render.height > 0 ? render.height : scene.height;
   PAC_TRY(out.split, make_split(render.split.empty() ? scene.default_split : std::string_view(render.split), scene,
                                 {render.samples}));
-  ServerOptions server_options;
-  server_options.width = out.width;
-  server_options.height = out.height;
-  server_options.transmit_model = render.transmit_model;
-  server_options.coding = options.coding;
-  server_options.threads = render.threads;
-  server_options.isa = render.isa;
-  PAC_TRY(Server server, Server::create(std::move(scene), out.split, server_options));
-  ClientOptions client_options;
-  client_options.threads = render.threads;
-  client_options.isa = render.isa;
-  PAC_TRY(Client client, Client::create(server.session(), client_options));
-  out.resident_model_bytes = render.transmit_model ? 0 : server.session().size();
-  if (sink.session) sink.session(server.session());
-
-  const float aspect = static_cast<float>(out.width) / static_cast<float>(out.height);
-  JpegAnimation animation(std::move(server), std::move(client), options, sink);
-  for (int number = 0; number < options.frames; ++number) PAC_CHECK(animation.frame(number, path(number, aspect), out));
+  if (options.codec == VideoCodec::mpeg1) {
+    PAC_CHECK(run_mpeg1(std::move(scene), path, options, sink, out));
+  } else {
+    PAC_CHECK(run_mjpeg(std::move(scene), path, options, sink, out));
+  }
   return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/file_io.h"
 #include "base/result.h"
+#include "sim/assisted_video.h"
 #include "sim/experiment.h"
 #include "sim/match.h"
 #include "sim/scenes.h"
@@ -15,7 +16,7 @@
 
 namespace pac::sim {
 
-enum class VideoCodec : uint8_t { mjpeg };
+enum class VideoCodec : uint8_t { mjpeg, mpeg1 };
 
 // Frame number (from 0) and aspect (width / height) to camera.
 using CameraPath = std::function<raster::Camera(int frame, float aspect)>;
@@ -26,12 +27,19 @@ struct AnimationOptions {
   int frames = 48;  // >= 1
   VideoCodec codec = VideoCodec::mjpeg;
   double quality = 15;  // mjpeg: of each image-based frame, (0, 100]; D is matched to that frame's bytes
+
+  // mpeg1. The whole sequence is held in memory, some 14 bytes a pixel: its sizes are matched by a search over the
+  // quantizer of D, to 1 % and never above the image-based arm's.
+  double quantizer_scale = 8;  // of the image-based arm, 1..31
+  uint64_t bit_rate_bps = 0;   // > 0: both arms' quantizers are searched for this rate instead
+  int frames_per_second = 20;  // 1..60: the next legal picture_rate that is not slower goes into the headers
+  AssistedVideoOptions video;  // of the polygon-assisted arm; quantizer_scale and picture_rate_code are set by the run
 };
 
 // One arm's frame.
 struct ArmFrame {
   uint64_t bytes = 0;  // of the code: JPEG file or MPEG picture, and the model where it is transmitted
-  double quality = 0;  // coded quality
+  double quality = 0;  // coded quality; mpeg1: quantizer_scale
   FrameScores scores{};
 };
 
@@ -65,7 +73,7 @@ struct AnimationSink {
 };
 
 // Renders, codes both arms, sends the packets to a client, scores what both show. The client sees nothing but bytes;
-// corrupt where its picture is not the one that the server predicted. Fails as Server::create and Client::receive, and
+// corrupt where its picture is not the one that the server predicts. Fails as Server::create and Client::receive, and
 // with bad_argument.
 Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
                                 const AnimationSink& sink = {});

@@ -1,9 +1,11 @@
 #include "sim/client.h"
 
+#include <optional>
 #include <utility>
 
 #include "jpeg/jpeg.h"
 #include "raster/renderer.h"
+#include "sim/assisted_video.h"
 #include "sim/difference.h"
 #include "sim/packet.h"
 #include "sim/screen_model.h"
@@ -20,7 +22,23 @@ struct Client::State {
   raster::Renderer renderer;
   RgbImage low;
   uint32_t frame_number = 0;
+  bool exact = true;  // no picture that this one depends on was lost
+  bool started = false;
+  DepthImage depth;  // of L: codec mpeg1
+  IdImage id;
+  std::optional<AssistedDecoder> video;
 };
+
+namespace {
+
+Result<RgbImage> receive_jpeg(const FramePacket& packet, const RgbImage& low, const ClientOptions& options) {
+  PAC_TRY(const RgbImage difference, jpeg::decode(packet.difference, options.limits, options.isa));
+  RgbImage picture(low.width(), low.height());
+  composite_image(low.view(), difference.view(), picture.view(), options.isa);
+  return picture;
+}
+
+}  // namespace
 
 Result<Client> Client::create(std::span<const uint8_t> session, const ClientOptions& options) {
   PAC_TRY(const SessionMessage message, read_session_message(session));
@@ -35,9 +53,21 @@ Result<Client> Client::create(std::span<const uint8_t> session, const ClientOpti
   renderer_options.threads = options.threads;
   renderer_options.isa = options.isa;
   PAC_TRY(raster::Renderer renderer, raster::Renderer::create(message.width, message.height, renderer_options));
-  return Client(std::make_unique<State>(State{options, message.width, message.height, message.low, message.background,
-                                              message.has_model, std::move(model), std::move(renderer),
-                                              RgbImage(message.width, message.height), 0}));
+  return Client(std::make_unique<State>(State{options,
+                                              message.width,
+                                              message.height,
+                                              message.low,
+                                              message.background,
+                                              message.has_model,
+                                              std::move(model),
+                                              std::move(renderer),
+                                              RgbImage(message.width, message.height),
+                                              0,
+                                              true,
+                                              false,
+                                              {},
+                                              {},
+                                              std::nullopt}));
 }
 
 Client::Client(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -49,6 +79,10 @@ const RgbImage& Client::low() const {
   return state_->low;
 }
 
+bool Client::is_exact() const {
+  return state_->exact;
+}
+
 uint32_t Client::frame_number() const {
   return state_->frame_number;
 }
@@ -58,25 +92,42 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   PAC_TRY(const FramePacket packet, read_frame_packet(bytes));
   if (packet.has_model == state.resident)
     return Failure{Error::corrupt, 7, "packet and session disagree about where the model is"};
-  // The size first: a hostile JPEG header must not make us allocate another picture than ours.
-  PAC_TRY(const jpeg::Info info, jpeg::read_info(packet.difference, state.options.limits));
-  if (info.width != state.width || info.height != state.height)
-    return Failure{Error::corrupt, 0, "difference image has another size than the session"};
+  const bool is_video = packet.codec == Codec::mpeg1;
+  if (is_video && packet.has_model) return Failure{Error::unsupported, 6, "video against a transmitted model"};
+  if (is_video && !state.video) {
+    const AssistedScene seen{state.width, state.height, &state.model, state.quality.samples};
+    Limits limits = state.options.limits;
+    limits.max_pixels = static_cast<uint64_t>(state.width) * static_cast<uint64_t>(state.height);
+    PAC_TRY(state.video, AssistedDecoder::create(seen, limits, state.options.isa));
+    state.depth = DepthImage(state.width, state.height);
+    state.id = IdImage(state.width, state.height);
+  }
+  if (!is_video) {
+    // The size first: a hostile JPEG header must not make us allocate another picture than ours.
+    PAC_TRY(const jpeg::Info info, jpeg::read_info(packet.difference, state.options.limits));
+    if (info.width != state.width || info.height != state.height)
+      return Failure{Error::corrupt, 0, "difference image has another size than the session"};
+  }
 
-  const raster::RenderTargets targets{state.low.view(), {}, {}};
+  const raster::RenderTargets targets{state.low.view(), state.depth.view(), state.id.view()};
   if (packet.has_model) {
     PAC_CHECK(draw_screen_model(state.renderer, packet.model, state.quality, state.background, state.low.view(),
                                 state.options.limits));
   } else {
     PAC_CHECK(state.renderer.render(state.model, packet.camera, state.quality, targets));
   }
+  const bool in_order = state.started && packet.frame == state.frame_number + 1;
   state.frame_number = packet.frame;
   if (image_hash(state.low.view()) != packet.low_hash)
     return Failure{Error::corrupt, 96, "low-quality rendering differs from the server's"};
+  if (!is_video) return receive_jpeg(packet, state.low, state.options);
 
-  PAC_TRY(const RgbImage difference, jpeg::decode(packet.difference, state.options.limits, state.options.isa));
   RgbImage picture(state.width, state.height);
-  composite_image(state.low.view(), difference.view(), picture.view(), state.options.isa);
+  state.exact = state.exact && in_order;
+  PAC_CHECK(state.video->decode(packet.difference, state.low.view(), state.depth.view(), state.id.view(), packet.camera,
+                                picture.view()));
+  state.exact = state.exact || state.video->last_was_key();
+  state.started = true;
   return picture;
 }
 

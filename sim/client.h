@@ -35,6 +35,10 @@ class Client {
   const RgbImage& low() const;
   uint32_t frame_number() const;
 
+  // The last picture is the one that the server predicts. False after a lost frame, for video whose pictures depend on
+  // others, until the next one that stands alone.
+  bool is_exact() const;
+
  private:
   struct State;
   explicit Client(std::unique_ptr<State> state);

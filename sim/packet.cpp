@@ -93,8 +93,10 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes) {
   reader.raw(6);
   FramePacket packet;
   const uint8_t codec = reader.u8(), flags = reader.u8();
-  if (codec != static_cast<uint8_t>(Codec::jpeg)) return Failure{Error::unsupported, 6, "unknown codec"};
+  if (codec != static_cast<uint8_t>(Codec::jpeg) && codec != static_cast<uint8_t>(Codec::mpeg1))
+    return Failure{Error::unsupported, 6, "unknown codec"};
   if ((flags & ~kHasModel) != 0) return Failure{Error::unsupported, 7, "unknown flag"};
+  packet.codec = static_cast<Codec>(codec);
   packet.has_model = flags != 0;
   packet.frame = reader.u32();
   if (!read_camera(reader, packet.camera)) return Failure{Error::corrupt, 12, "camera is not finite"};

@@ -19,7 +19,7 @@
 
 namespace pac::sim {
 
-enum class Codec : uint8_t { jpeg = 1 };
+enum class Codec : uint8_t { jpeg = 1, mpeg1 = 2 };
 
 constexpr uint16_t kProtocolVersion = 1;
 constexpr size_t kFramePacketOverhead = 116;  // bytes of a frame packet beside model and difference

@@ -1,5 +1,6 @@
 #include "sim/server.h"
 
+#include <optional>
 #include <utility>
 
 #include "sim/difference.h"
@@ -14,6 +15,8 @@ struct Server::State {
   FrameRenderer renderer;
   Bytes session;
   ServerFrame last;
+  std::optional<AssistedEncoder> video;
+  bool key_requested = false;
 };
 
 namespace {
@@ -38,7 +41,15 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
   PAC_TRY(FrameRenderer renderer, FrameRenderer::create(scene, split, options.transmit_model, options.width,
                                                         options.height, options.threads, options.isa));
   Bytes session = make_session(renderer.low_scene(), split, options);
-  return Server(std::make_unique<State>(State{std::move(scene), options, std::move(renderer), std::move(session), {}}));
+  std::optional<AssistedEncoder> video;
+  if (options.codec == Codec::mpeg1) {
+    if (options.transmit_model)
+      return Failure{Error::bad_argument, 0, "video is coded against a model that is resident"};
+    const AssistedScene seen{options.width, options.height, &renderer.low_scene(), split.low.samples};
+    PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
+  }
+  return Server(std::make_unique<State>(
+      State{std::move(scene), options, std::move(renderer), std::move(session), {}, std::move(video), false}));
 }
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -60,20 +71,60 @@ Result<Bytes> Server::frame(uint32_t frame_number, const raster::Camera& camera)
 }
 
 Result<FrameImages> Server::render(const raster::Camera& camera) {
-  return state_->renderer.render(state_->scene, camera);
+  return state_->renderer.render(state_->scene, camera, state_->video.has_value());
 }
+
+void Server::request_key() {
+  state_->key_requested = true;
+}
+
+namespace {
+
+// What one codec makes of a frame.
+struct CodedFrame {
+  double quality = 0;
+  Bytes bytes;
+  RgbImage composite;
+  AssistedReport video;
+};
+
+Result<CodedFrame> code_jpeg(const FrameImages& images, const ServerOptions& options, uint64_t target_bytes) {
+  const ConstRgbView difference = images.difference.view();
+  PAC_TRY(CodedImage coded, target_bytes > 0
+                                ? code_at_size(difference, Content::difference, target_bytes, options.coding)
+                                : code_at_quality(difference, Content::difference, options.quality, options.coding));
+  PAC_TRY(const RgbImage decoded, jpeg::decode(coded.bytes, {}, options.isa));
+  CodedFrame out;
+  out.quality = coded.quality;
+  out.bytes = std::move(coded.bytes);
+  out.composite = RgbImage(options.width, options.height);
+  composite_image(images.low.view(), decoded.view(), out.composite.view(), options.isa);
+  return out;
+}
+
+Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& camera, const ServerOptions& options,
+                              AssistedEncoder& video, bool key) {
+  CodedFrame out;
+  const AssistedFrame frame{images.high.view(), images.low.view(), images.depth.view(), images.id.view(), camera};
+  PAC_TRY(out.video, video.encode(frame, out.bytes, key));
+  out.quality = out.video.quantizer_scale;
+  out.composite = RgbImage(options.width, options.height);
+  video.composite(images.low.view(), out.composite.view());
+  return out;
+}
+
+}  // namespace
 
 Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, FrameImages images,
                            uint64_t target_bytes) {
   const ServerOptions& options = state_->options;
-  const ConstRgbView difference = images.difference.view();
-  PAC_TRY(const CodedImage coded,
-          target_bytes > 0 ? code_at_size(difference, Content::difference, target_bytes, options.coding)
-                           : code_at_quality(difference, Content::difference, options.quality, options.coding));
-  PAC_TRY(const RgbImage decoded, jpeg::decode(coded.bytes, {}, options.isa));
+  PAC_TRY(CodedFrame coded, state_->video ? code_video(images, camera, options, *state_->video, state_->key_requested)
+                                          : code_jpeg(images, options, target_bytes));
+  state_->key_requested = false;
 
   FramePacket packet;
   packet.frame = frame_number;
+  packet.codec = options.codec;
   packet.has_model = options.transmit_model;
   packet.camera = camera;
   packet.quality = coded.quality;
@@ -83,8 +134,8 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   Bytes bytes = write_frame_packet(packet);
 
   ServerFrame& last = state_->last;
-  last.composite = RgbImage(options.width, options.height);
-  composite_image(images.low.view(), decoded.view(), last.composite.view(), options.isa);
+  last.composite = std::move(coded.composite);
+  last.video = coded.video;
   last.high = std::move(images.high);
   last.low = std::move(images.low);
   last.difference = std::move(images.difference);

@@ -10,8 +10,10 @@
 #include "base/isa.h"
 #include "base/result.h"
 #include "raster/scene.h"
+#include "sim/assisted_video.h"
 #include "sim/frame_renderer.h"
 #include "sim/match.h"
+#include "sim/packet.h"
 #include "sim/scenes.h"
 #include "sim/split.h"
 
@@ -22,16 +24,19 @@ struct ServerOptions {
   double quality = 41;            // coded quality of D (the paper's notation), (0, 100]
   uint64_t target_bytes = 0;      // > 0: search the quality for this difference size instead, frame by frame
   bool transmit_model = false;    // false: the model is resident, in the session message
-  CodingOptions coding;
-  int threads = 1;  // of the renderer; 0 = all. Results never depend on it
+  CodingOptions coding;           // codec jpeg
+  Codec codec = Codec::jpeg;
+  AssistedVideoOptions video;  // codec mpeg1 (resident models only); quality and sizes above mean nothing to it
+  int threads = 1;             // of the renderer; 0 = all. Results never depend on it
   Isa isa = best_isa();
 };
 
 // What the server knows of the frame it just sent; valid until the next frame() call.
 struct ServerFrame {
   RgbImage high, low, difference;
-  RgbImage composite;  // what a client will show, bit for bit
-  double quality = 0;  // coded quality of D
+  RgbImage composite;    // what a client will show, bit for bit
+  double quality = 0;    // coded quality of D; codec mpeg1: quantizer_scale
+  AssistedReport video;  // codec mpeg1
   uint64_t model_bytes = 0, difference_bytes = 0, packet_bytes = 0;
 };
 
@@ -58,6 +63,9 @@ class Server {
   Result<Bytes> send(uint32_t frame_number, const raster::Camera& camera, FrameImages images, uint64_t target_bytes);
 
   const ServerFrame& last_frame() const;
+
+  // The next frame stands alone (codec mpeg1): what a client asks for that has lost one.
+  void request_key();
 
  private:
   struct State;

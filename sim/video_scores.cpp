@@ -1,19 +1,38 @@
 #include "sim/video_scores.h"
 
-#include <algorithm>
-#include <cmath>
-
+#include "base/flip.h"
 #include "base/metrics.h"
 #include "base/parallel.h"
+#include "base/psnr_hvs.h"
+#include "base/ssimulacra2.h"
 
 namespace pac::sim {
 
+namespace {
+
+double ssimulacra2_score(ConstRgbView reference, ConstRgbView test) {
+  return ssimulacra2(reference, test);
+}
+double flip_score(ConstRgbView reference, ConstRgbView test) {
+  return flip(reference, test);
+}
+double psnr_hvs_m(ConstRgbView reference, ConstRgbView test) {
+  return psnr_hvs_luma(reference, test).psnr_hvs_m_db;
+}
+
+}  // namespace
+
 const std::array<ScoreKind, kScoreCount> kScores = {{
+    {"ssimulacra2", "SSIMULACRA 2", true, 2, ssimulacra2_score},
+    {"flip", "FLIP", false, 4, flip_score},
+    {"psnr_hvs_m_db", "PSNR-HVS-M (dB)", true, 2, psnr_hvs_m},
     {"psnr_rgb_db", "PSNR, RGB (dB)", true, 2, psnr_rgb},
-    {"psnr_luma_db", "PSNR, luma (dB)", true, 2, psnr_luma},
     {"ssim", "SSIM, luma", true, 4, ssim_luma},
-    {"ms_ssim", "MS-SSIM, luma", true, 4, ms_ssim_luma},
 }};
+
+QualityScores quality_scores(const FrameScores& scores) {
+  return {scores[0], scores[1], scores[2]};
+}
 
 std::vector<FrameScores> score_frames(std::span<const ScoredPair> pairs, int threads) {
   std::vector<FrameScores> scores(pairs.size());
@@ -24,20 +43,11 @@ std::vector<FrameScores> score_frames(std::span<const ScoredPair> pairs, int thr
   return scores;
 }
 
-ScoreSummary summarize(std::span<const FrameScores> frames, size_t kind) {
-  PAC_ASSERT(!frames.empty() && kind < kScoreCount);
-  constexpr double kEqual = 100;
+FrameSummary summarize(std::span<const FrameScores> frames, size_t kind) {
+  PAC_ASSERT(kind < kScoreCount);
   std::vector<double> values;
-  for (const FrameScores& frame : frames) values.push_back(std::isfinite(frame[kind]) ? frame[kind] : kEqual);
-  std::sort(values.begin(), values.end());
-  if (!kScores[kind].larger_is_better) std::reverse(values.begin(), values.end());
-  ScoreSummary summary;
-  for (const double value : values) summary.mean += value;
-  summary.mean /= static_cast<double>(values.size());
-  const size_t n_worst = std::max<size_t>(1, values.size() / 20);
-  for (size_t i = 0; i < n_worst; ++i) summary.worst += values[i];
-  summary.worst /= static_cast<double>(n_worst);
-  return summary;
+  for (const FrameScores& frame : frames) values.push_back(frame[kind]);
+  return summarize_frames(values, kScores[kind].larger_is_better ? Better::larger : Better::smaller);
 }
 
 }  // namespace pac::sim

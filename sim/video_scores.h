@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/image.h"
+#include "base/verdict.h"
 
 namespace pac::sim {
 
@@ -17,7 +18,7 @@ struct ScoreKind {
   double (*measure)(ConstRgbView reference, ConstRgbView test);
 };
 
-constexpr size_t kScoreCount = 4;
+constexpr size_t kScoreCount = 5;
 extern const std::array<ScoreKind, kScoreCount> kScores;
 
 using FrameScores = std::array<double, kScoreCount>;  // in the order of kScores
@@ -26,15 +27,13 @@ struct ScoredPair {
   ConstRgbView reference, test;
 };
 
+// How the verdict of base/verdict.h sees them.
+QualityScores quality_scores(const FrameScores& scores);
+
 // All metrics of all pairs, on up to `threads` threads (0 = all); the result does not depend on it.
 std::vector<FrameScores> score_frames(std::span<const ScoredPair> pairs, int threads);
 
-struct ScoreSummary {
-  double mean = 0;
-  double worst = 0;  // mean over the worst 5 % of the frames (at least one)
-};
-
-// Of metric number `kind`. Infinite values (PSNR of equal pictures) count as 100. frames must not be empty.
-ScoreSummary summarize(std::span<const FrameScores> frames, size_t kind);
+// Of metric number `kind` (base/verdict.h). Infinite values (PSNR of equal pictures) count as 100.
+FrameSummary summarize(std::span<const FrameScores> frames, size_t kind);
 
 }  // namespace pac::sim

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/verdict.h"
 #include "sim/animation.h"
 #include "sim/cli/animate_files.h"
 #include "sim/cli/command.h"
@@ -13,9 +14,33 @@ namespace {
 
 struct Request {
   std::string scene, out;
-  int first = 0, fps = 20;
+  int first = 0, bit_rate_bps = 0;
   sim::AnimationOptions animation;
 };
+
+// What mpeg1 alone takes.
+void declare_video(Options& options, Request& request) {
+  using sim::Difference;
+  using sim::Prediction;
+  sim::AssistedVideoOptions& video = request.animation.video;
+  options.choice<Prediction>(
+      "--prediction", video.prediction,
+      {{"none", Prediction::none}, {"block", Prediction::block}, {"model", Prediction::model}},
+      "mpeg1: of the polygon-assisted pictures: from nothing, by moved blocks, by the model (model)");
+  options.choice<Difference>("--difference", video.difference,
+                             {{"halved", Difference::halved}, {"full", Difference::full}},
+                             "mpeg1: 127+(H-L)/2 as the paper, or H predicted from L (full; block: halved)");
+  options.real("--quantizer-scale", "Q", request.animation.quantizer_scale, 1, 31,
+               "mpeg1: of the image-based arm; the other is matched to its bytes (8)");
+  options.integer("--bit-rate", "BPS", request.bit_rate_bps, 1000, 100000000,
+                  "mpeg1: both arms are matched to this rate instead");
+  options.integer("--gop", "N", video.key_interval, 1, 132,
+                  "mpeg1: pictures from one that stands alone to the next (132)");
+  options.choice<mpeg1::Effort>(
+      "--effort", video.effort,
+      {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
+      "mpeg1: of both encoders (default)");
+}
 
 void declare(Options& options, Request& request) {
   using sim::TableFamily;
@@ -25,11 +50,12 @@ void declare(Options& options, Request& request) {
   options.positional("SCENE", request.scene, kSceneHelp);
   options.integer("--frames", "N", request.animation.frames, 1, 100000, "of the camera path (48)");
   options.integer("--first", "N", request.first, 0, 1000000, "frame of the path to start with (0)");
-  options.integer("--fps", "F", request.fps, 1, 1000, "frames a second (20, as Table I)");
+  options.integer("--fps", "F", request.animation.frames_per_second, 1, 60, "frames a second (20, as Table I)");
   options.text("--split", "NAMES", render.split,
                "texture, tessellation, shading, antialiasing, lighting, or several joined by commas (the scene's own)");
-  options.choice<VideoCodec>("--codec", request.animation.codec, {{"mjpeg", VideoCodec::mjpeg}},
-                             "of both arms (mjpeg)");
+  options.choice<VideoCodec>("--codec", request.animation.codec,
+                             {{"mjpeg", VideoCodec::mjpeg}, {"mpeg1", VideoCodec::mpeg1}}, "of both arms (mjpeg)");
+  declare_video(options, request);
   options.real("-q|--quality", "Q", request.animation.quality, 0.01, 100,
                "of the image-based motion JPEG; the other arm is matched to its bytes, frame by frame (15)");
   options.choice<bool>("--model", render.transmit_model, {{"resident", false}, {"transmitted", true}},
@@ -48,7 +74,7 @@ void declare(Options& options, Request& request) {
 }
 
 double kilobits_a_second(uint64_t bytes, const Request& request) {
-  return 8e-3 * static_cast<double>(bytes) * request.fps / request.animation.frames;
+  return 8e-3 * static_cast<double>(bytes) * request.animation.frames_per_second / request.animation.frames;
 }
 
 void json_arm(sim::JsonWriter& json, const char* name, const sim::VideoArm& arm, const Request& request) {
@@ -58,10 +84,10 @@ void json_arm(sim::JsonWriter& json, const char* name, const sim::VideoArm& arm,
   json.field("bytes", arm.bytes);
   json.field("kilobits_per_second", kilobits_a_second(arm.bytes, request));
   for (size_t kind = 0; kind < sim::kScoreCount; ++kind) {
-    const sim::ScoreSummary summary = sim::summarize(scores, kind);
+    const FrameSummary summary = sim::summarize(scores, kind);
     json.begin_object(sim::kScores[kind].key);
     json.field("mean", summary.mean);
-    json.field("worst_5_percent", summary.worst);
+    json.field("worst_5_percent", summary.worst_5_percent);
     json.end_object();
   }
   json.begin_array("frames");
@@ -76,20 +102,44 @@ void json_arm(sim::JsonWriter& json, const char* name, const sim::VideoArm& arm,
   json.end_object();
 }
 
+// The image-based arm is the first.
+Verdict verdict(const sim::Animation& animation) {
+  std::vector<QualityScores> scores[2];
+  for (const sim::ArmFrame& frame : animation.image_based.frames)
+    scores[0].push_back(sim::quality_scores(frame.scores));
+  for (const sim::ArmFrame& frame : animation.polygon_assisted.frames)
+    scores[1].push_back(sim::quality_scores(frame.scores));
+  return compare_quality({animation.image_based.bytes, scores[0]}, {animation.polygon_assisted.bytes, scores[1]});
+}
+
+const char* verdict_of_arms(const sim::Animation& animation) {
+  switch (verdict(animation)) {
+    case Verdict::first_better:
+      return "the image-based arm is better";
+    case Verdict::second_better:
+      return "the polygon-assisted arm is better";
+    case Verdict::disagree:
+      return "metrics disagree";
+    default:
+      return "bytes differ: no comparison";
+  }
+}
+
 int print_as_json(const Request& request, const sim::Animation& animation) {
   sim::JsonWriter json;
   json.begin_object();
   json.field("scene", request.scene);
   json.field("split", animation.split.name);
-  json.field("codec", "mjpeg");
+  json.field("codec", request.animation.codec == sim::VideoCodec::mpeg1 ? "mpeg1" : "mjpeg");
   json.field("width", animation.width);
   json.field("height", animation.height);
   json.field("frames", request.animation.frames);
-  json.field("frames_per_second", request.fps);
+  json.field("frames_per_second", request.animation.frames_per_second);
   json.field("resident_model_bytes", animation.resident_model_bytes);
   json.field("packet_bytes", animation.packet_bytes);
   json_arm(json, "image_based", animation.image_based, request);
   json_arm(json, "polygon_assisted", animation.polygon_assisted, request);
+  json.field("verdict", verdict_of_arms(animation));
   json.end_object();
   return print_json(json);
 }
@@ -97,7 +147,8 @@ int print_as_json(const Request& request, const sim::Animation& animation) {
 void print_text(const Request& request, const sim::Animation& animation) {
   const sim::VideoArm &image = animation.image_based, &polygon = animation.polygon_assisted;
   std::printf("%s, split %s, %d x %d, %d frames at %d a second\n\n", request.scene.c_str(),
-              animation.split.name.c_str(), animation.width, animation.height, request.animation.frames, request.fps);
+              animation.split.name.c_str(), animation.width, animation.height, request.animation.frames,
+              request.animation.frames_per_second);
   std::printf("%-26s %22s %22s\n", "", "image-based", "polygon-assisted");
   const auto row = [](const char* label, double a, double b, int digits) {
     std::printf("%-26s %22.*f %22.*f\n", label, digits, a, digits, b);
@@ -108,29 +159,35 @@ void print_text(const Request& request, const sim::Animation& animation) {
   for (const sim::ArmFrame& frame : image.frames) scores[0].push_back(frame.scores);
   for (const sim::ArmFrame& frame : polygon.frames) scores[1].push_back(frame.scores);
   for (size_t kind = 0; kind < sim::kScoreCount; ++kind) {
-    const sim::ScoreSummary a = sim::summarize(scores[0], kind), b = sim::summarize(scores[1], kind);
+    const FrameSummary a = sim::summarize(scores[0], kind), b = sim::summarize(scores[1], kind);
     row(sim::kScores[kind].label, a.mean, b.mean, sim::kScores[kind].digits);
-    row("  worst 5 % of frames", a.worst, b.worst, sim::kScores[kind].digits);
+    row("  worst 5 % of frames", a.worst_5_percent, b.worst_5_percent, sim::kScores[kind].digits);
   }
+  std::printf("\n%s\n", verdict_of_arms(animation));
 }
 
 }  // namespace
 
 int run_animate(Args args) {
   Options options("animate", "a sequence, image-based and polygon-assisted at matched bytes",
-                  "pac animate cubes --frames 4 --codec mjpeg --width 128 --height 128 -o cubes-animated");
+                  "pac animate cubes --frames 4 --codec mpeg1 --width 128 --height 128 -o cubes-animated");
   Request request;
   declare(options, request);
   if (const auto code = options.parse(args)) return *code;
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   sim::AnimationOptions& animation = request.animation;
+  if (options.given("--bit-rate") && options.given("--quantizer-scale"))
+    return options.usage_error("--bit-rate chooses the quantizer itself: leave --quantizer-scale out");
+  animation.bit_rate_bps = static_cast<uint64_t>(request.bit_rate_bps);
+  if (animation.video.prediction == sim::Prediction::block && !options.given("--difference"))
+    animation.video.difference = sim::Difference::halved;
   if (animation.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
     sim::add_coarse_model(source->set);
   animation.render.threads = animation.coding.threads = options.threads;
   animation.render.isa = animation.coding.isa = options.isa;
 
-  AnimationFiles files(request.out, request.fps, options.isa);
+  AnimationFiles files(request.out, animation.codec, animation.frames_per_second, options.isa);
   if (const int code = files.open(); code != kDone) return code;
   Progress progress(options.quiet);
   sim::AnimationSink sink;

@@ -17,8 +17,8 @@ void append(Bytes& out, std::span<const uint8_t> bytes) {
 
 }  // namespace
 
-AnimationFiles::AnimationFiles(std::string folder, int fps, Isa isa)
-    : folder_(std::move(folder)), fps_(fps), isa_(isa) {}
+AnimationFiles::AnimationFiles(std::string folder, sim::VideoCodec codec, int fps, Isa isa)
+    : folder_(std::move(folder)), codec_(codec), fps_(fps), isa_(isa) {}
 
 int AnimationFiles::open() const {
   return folder_.empty() ? kDone : make_folder(folder_);
@@ -48,9 +48,13 @@ void AnimationFiles::add_frame(const sim::AnimationFrame& frame) {
 
 int AnimationFiles::write() const {
   if (folder_.empty()) return kDone;
-  const std::pair<const char*, const Bytes*> files[] = {{"image.mjpeg", &image_},   {"difference.mjpeg", &difference_},
-                                                        {"session.pacs", &pacs_},   {"H.y4m", &high_y4m_},
-                                                        {"image.y4m", &image_y4m_}, {"composite.y4m", &composite_y4m_}};
+  const bool is_video = codec_ == sim::VideoCodec::mpeg1;
+  const std::pair<const char*, const Bytes*> files[] = {{is_video ? "image.m1v" : "image.mjpeg", &image_},
+                                                        {is_video ? "difference.m1v" : "difference.mjpeg", &difference_},
+                                                        {"session.pacs", &pacs_},
+                                                        {"H.y4m", &high_y4m_},
+                                                        {"image.y4m", &image_y4m_},
+                                                        {"composite.y4m", &composite_y4m_}};
   for (const auto& [name, bytes] : files)
     if (const int code = write_output(folder_ + "/" + name, *bytes); code != kDone) return code;
   return kDone;

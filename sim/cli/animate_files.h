@@ -7,12 +7,12 @@
 
 namespace pac::cli {
 
-// DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them), session.pacs, and the sequences
-// H.y4m, image.y4m, composite.y4m. Collected in memory, written at the end.
+// DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them) or image.m1v, difference.m1v;
+// session.pacs, and the sequences H.y4m, image.y4m, composite.y4m. Collected in memory, written at the end.
 class AnimationFiles {
  public:
   // An empty folder name: nothing is kept or written.
-  AnimationFiles(std::string folder, int fps, Isa isa);
+  AnimationFiles(std::string folder, sim::VideoCodec codec, int fps, Isa isa);
 
   // Makes the folder. kDone, or kBadData after the message; so does write().
   int open() const;
@@ -24,6 +24,7 @@ class AnimationFiles {
   void add_picture(Bytes& sequence, const RgbImage& picture) const;
 
   std::string folder_;
+  sim::VideoCodec codec_;
   int fps_;
   Isa isa_;
   Bytes image_, difference_, pacs_, high_y4m_, image_y4m_, composite_y4m_;

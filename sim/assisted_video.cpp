@@ -1,0 +1,279 @@
+#include "sim/assisted_video.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "raster/sample_pattern.h"
+#include "sim/difference.h"
+#include "sim/frame420.h"
+#include "sim/model_prediction.h"
+#include "sim/signed_composite.h"
+
+namespace pac::sim {
+
+namespace {
+
+// The first byte of each frame: what the decoder must know before the picture.
+constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8;
+
+// Eye and metric forgive errors of fine detail; the flat default spends bits on it. Entries 16 (DC) to 58.
+mpeg1::QuantizerMatrix sloping_matrix(double at_dc, double slope) {
+  mpeg1::QuantizerMatrix matrix;
+  for (size_t v = 0; v < 8; ++v)
+    for (size_t u = 0; u < 8; ++u)
+      matrix[8 * v + u] =
+          static_cast<uint8_t>(std::clamp(at_dc + slope * static_cast<double>(u + v) + 0.5, 1.0, 255.0));
+  return matrix;
+}
+
+// D holds H - L at half height: half the quantizer degrades its features as the whole one does H's [Levoy95 s.3]. The
+// entry of the intra DC is fixed at 8 [2.4.3.2].
+mpeg1::QuantizerMatrix halved(mpeg1::QuantizerMatrix matrix) {
+  for (uint8_t& entry : matrix) entry = static_cast<uint8_t>(std::max(3, (entry + 1) / 2));
+  return matrix;
+}
+
+mpeg1::QuantizerMatrix halved_intra() {
+  mpeg1::QuantizerMatrix matrix = halved(mpeg1::kDefaultIntraMatrix);
+  matrix[0] = 8;
+  return matrix;
+}
+
+mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const AssistedVideoOptions& options) {
+  mpeg1::SequenceOptions sequence;
+  sequence.width = scene.width;
+  sequence.height = scene.height;
+  sequence.picture_rate_code = options.picture_rate_code;
+  sequence.gop_length = options.key_interval;
+  sequence.quantizer_scale = options.quantizer_scale;
+  sequence.effort = options.effort;
+  const bool is_halved = options.difference == Difference::halved;
+  sequence.intra_refresh = options.prediction == Prediction::block;  // elsewhere nothing drifts
+  if (options.prediction == Prediction::block) {
+    sequence.non_intra_matrix = halved(mpeg1::kDefaultNonIntraMatrix);
+  } else {
+    constexpr double kSlope = 3;
+    sequence.non_intra_matrix = is_halved ? sloping_matrix(8, kSlope / 2) : sloping_matrix(16, kSlope);
+  }
+  if (is_halved) sequence.intra_matrix = halved_intra();
+  return sequence;
+}
+
+const char* problem_with(const AssistedVideoOptions& options) {
+  if (options.prediction == Prediction::block && options.difference == Difference::full)
+    return "block prediction codes halved differences";
+  if (!(options.quantizer_scale >= 1 && options.quantizer_scale <= 31)) return "quantizer_scale is outside 1..31";
+  if (options.key_quantizer_scale != 0 && !(options.key_quantizer_scale >= 1 && options.key_quantizer_scale <= 31))
+    return "key_quantizer_scale is outside 1..31";
+  if (options.key_interval < 1 || options.key_interval > 132) return "key_interval is outside 1..132";
+  return nullptr;
+}
+
+// What server and client do alike.
+class SharedState {
+ public:
+  SharedState(const AssistedScene& scene, Isa isa)
+      : isa_(isa),
+        base_(scene.width, scene.height),
+        coded_(scene.width, scene.height),
+        predictor_(scene.width, scene.height, surfaces_of(*scene.low), first_sample(scene.samples).x / 256.0,
+                   first_sample(scene.samples).y / 256.0, isa) {}
+
+  // The picture that predicts this frame, or null where the codec's own does.
+  const Frame420* reference(Prediction prediction, Difference difference, bool is_key, ConstRgbView low,
+                            PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera) {
+    is_full_ = difference == Difference::full;
+    if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return nullptr;
+    if (is_full_)
+      frame420_from_rgb(low, base_, isa_);
+    else
+      fill_gray();
+    if (is_key || prediction == Prediction::none) predictor_.forget();
+    return &predictor_.reference(base_, depth, id, camera);
+  }
+
+  // What the codec made of it.
+  void keep(const mpeg1::FrameView& coded, bool uses_predictor) {
+    if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr, base_);
+    if (!is_full_) coded_ = mpeg1::copy_of(coded);
+  }
+
+  void composite(ConstRgbView low, RgbView shown) const {
+    if (is_full_) {
+      composite_signed(low, predictor_.difference(0), predictor_.difference(1), predictor_.difference(2), shown);
+      return;
+    }
+    rgb_from_frame420(coded_, shown, isa_);
+    composite_image(low, shown, shown, isa_);
+  }
+
+  double carried_share() const { return predictor_.stats().carried_share; }
+
+ private:
+  static raster::SampleOffset first_sample(int samples) { return raster::sample_pattern(samples)[0]; }
+
+  // D = 127 everywhere: no difference [Levoy95 s.3].
+  void fill_gray() {
+    const auto fill = [](GrayImage& plane, uint8_t value) {
+      for (int y = 0; y < plane.height(); ++y) std::fill_n(plane.row(y), plane.width(), value);
+    };
+    fill(base_.y, 127);
+    fill(base_.cb, 128);
+    fill(base_.cr, 128);
+  }
+
+  Isa isa_;
+  bool is_full_ = true;
+  Frame420 base_, coded_;
+  ModelPredictor predictor_;
+};
+
+Result<void> check(const AssistedScene& scene) {
+  if (scene.width < 1 || scene.width > mpeg1::kMaxWidth || scene.height < 1 || scene.height > mpeg1::kMaxHeight)
+    return Failure{Error::bad_argument, 0, "pictures of MPEG-1 are at most 4095 x 2800 pixels"};
+  if (raster::sample_pattern(scene.samples).empty())
+    return Failure{Error::bad_argument, 0, "samples a pixel must be 1, 4, 16 or 64"};
+  return {};
+}
+
+}  // namespace
+
+double key_quantizer_for(const AssistedVideoOptions& options) {
+  if (options.key_quantizer_scale != 0) return options.key_quantizer_scale;
+  return options.prediction == Prediction::model ? std::max(1.0, options.quantizer_scale / 4) : options.quantizer_scale;
+}
+
+struct AssistedEncoder::State {
+  AssistedVideoOptions options;
+  Isa isa;
+  SharedState shared;
+  mpeg1::Encoder encoder;
+  int since_key = -1;  // -1: nothing coded yet
+  Frame420 source;
+  RgbImage difference;
+};
+
+Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, const AssistedVideoOptions& options,
+                                                Isa isa) {
+  PAC_CHECK(check(scene));
+  if (const char* problem = problem_with(options)) return Failure{Error::bad_argument, 0, problem};
+  PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
+  return AssistedEncoder(
+      std::make_unique<State>(State{options, isa, SharedState(scene, isa), std::move(encoder), -1,
+                                    Frame420(scene.width, scene.height), RgbImage(scene.width, scene.height)}));
+}
+
+AssistedEncoder::AssistedEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+AssistedEncoder::~AssistedEncoder() = default;
+AssistedEncoder::AssistedEncoder(AssistedEncoder&&) noexcept = default;
+AssistedEncoder& AssistedEncoder::operator=(AssistedEncoder&&) noexcept = default;
+
+Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes& out, bool force_key,
+                                               double quantizer_scale) {
+  State& s = *state_;
+  const AssistedVideoOptions& options = s.options;
+  const bool is_key =
+      force_key || options.prediction == Prediction::none || s.since_key < 0 || s.since_key + 1 >= options.key_interval;
+  if (options.difference == Difference::full) {
+    frame420_from_rgb(frame.high, s.source, s.isa);
+  } else {
+    difference_image(frame.high, frame.low, s.difference.view(), s.isa);
+    frame420_from_rgb(s.difference.view(), s.source, s.isa);
+  }
+  mpeg1::PictureOptions picture;
+  picture.reference = s.shared.reference(options.prediction, options.difference, is_key, frame.low, frame.depth,
+                                         frame.id, frame.camera);
+  const bool replaced = picture.reference != nullptr;
+  picture.type = replaced || !is_key ? mpeg1::PictureType::P : mpeg1::PictureType::I;
+  AssistedVideoOptions wanted = options;
+  if (quantizer_scale > 0) wanted.quantizer_scale = quantizer_scale;
+  picture.quantizer_scale = is_key ? key_quantizer_for(wanted) : wanted.quantizer_scale;
+
+  const size_t before = out.size();
+  out.push_back(static_cast<uint8_t>((is_key ? kKey : 0) | static_cast<int>(options.prediction) << kPredictionShift |
+                                     (options.difference == Difference::full ? kFull : 0)));
+  PAC_TRY(const mpeg1::PictureReport coded, s.encoder.add(s.source, out, picture));
+  s.shared.keep(s.encoder.reconstruction(), replaced);
+  s.since_key = is_key ? 0 : s.since_key + 1;
+  AssistedReport report;
+  report.is_key = is_key;
+  report.bytes = out.size() - before;
+  report.quantizer_scale = picture.quantizer_scale;
+  report.carried_share = s.shared.carried_share();
+  report.skipped_macroblocks = coded.skipped_macroblocks;
+  report.coded_macroblocks = coded.coded_macroblocks;
+  report.intra_macroblocks = coded.intra_macroblocks;
+  return report;
+}
+
+void AssistedEncoder::composite(ConstRgbView low, RgbView shown) const {
+  state_->shared.composite(low, shown);
+}
+
+struct AssistedDecoder::State {
+  State(const AssistedScene& scene, const Limits& limits, Isa isa)
+      : width(scene.width), height(scene.height), shared(scene, isa), decoder(options(limits), isa) {}
+
+  mpeg1::DecoderOptions options(const Limits& limits) {
+    mpeg1::DecoderOptions result;
+    result.limits = limits;
+    result.strict = true;
+    result.low_delay = true;
+    result.reference = [](void* context, const mpeg1::PictureHeader&, const mpeg1::FrameView&) {
+      const State& state = *static_cast<const State*>(context);
+      const mpeg1::SequenceHeader* header = state.decoder.sequence();
+      const bool fits = header != nullptr && header->width == state.width && header->height == state.height;
+      return fits ? state.reference : nullptr;
+    };
+    result.reference_context = this;
+    return result;
+  }
+
+  int width, height;
+  SharedState shared;
+  mpeg1::Decoder decoder;
+  const Frame420* reference = nullptr;
+  bool was_key = false;
+};
+
+Result<AssistedDecoder> AssistedDecoder::create(const AssistedScene& scene, const Limits& limits, Isa isa) {
+  PAC_CHECK(check(scene));
+  return AssistedDecoder(std::make_unique<State>(scene, limits, isa));
+}
+
+AssistedDecoder::AssistedDecoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+AssistedDecoder::~AssistedDecoder() = default;
+AssistedDecoder::AssistedDecoder(AssistedDecoder&&) noexcept = default;
+AssistedDecoder& AssistedDecoder::operator=(AssistedDecoder&&) noexcept = default;
+
+bool AssistedDecoder::last_was_key() const {
+  return state_->was_key;
+}
+
+Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
+                                     PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown) {
+  State& s = *state_;
+  if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
+  const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
+  if ((bytes[0] & ~(kKey | kPredictionMask | kFull)) != 0 || prediction > static_cast<int>(Prediction::model))
+    return Failure{Error::unsupported, 0, "unknown kind of video frame"};
+  const auto kind = static_cast<Prediction>(prediction);
+  const bool is_full = (bytes[0] & kFull) != 0;
+  if (is_full && kind == Prediction::block) return Failure{Error::corrupt, 0, "block prediction of full differences"};
+  s.was_key = (bytes[0] & kKey) != 0;
+  s.reference =
+      s.shared.reference(kind, is_full ? Difference::full : Difference::halved, s.was_key, low, depth, id, camera);
+  s.decoder.feed(bytes.subspan(1));
+  s.decoder.end_picture();
+  PAC_TRY(const mpeg1::DecodedPicture* picture, s.decoder.next());
+  if (picture == nullptr) return Failure{Error::truncated, bytes.size(), "no picture in the video frame"};
+  if (picture->view.width() != s.width || picture->view.height() != s.height)
+    return Failure{Error::corrupt, 1, "pictures have another size than the session"};
+  s.shared.keep(picture->view, s.reference != nullptr);
+  s.shared.composite(low, shown);
+  return {};
+}
+
+}  // namespace pac::sim

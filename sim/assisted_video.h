@@ -1,0 +1,115 @@
+// The difference of H and L as MPEG-1 video, as the server codes it and as the client decodes it. Both hold the same
+// state and run the same code on it: there is no drift.
+//
+//   prediction none    every picture stands alone
+//              block   MPEG-1's own: blocks of the picture before, moved [Levoy95 s.3]
+//              model   the decoded difference carried by the model (sim/model_prediction.h)
+//   difference halved  D = 127 + (H-L)/2 in RGB, as the paper; a stock decoder shows it as a picture
+//              full    P pictures that predict H itself from L (+ carried difference): nothing is divided by two, and
+//                      what the model predicts well is a skipped macroblock
+// block codes halved differences; none and model either. The macroblock syntax is MPEG-1's throughout: only the
+// reference picture is replaced.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/file_io.h"
+#include "base/image.h"
+#include "base/isa.h"
+#include "base/result.h"
+#include "mpeg1/mpeg1.h"
+#include "raster/renderer.h"
+#include "raster/scene.h"
+
+namespace pac::sim {
+
+enum class Prediction : uint8_t { none, block, model };
+enum class Difference : uint8_t { halved, full };
+
+struct AssistedVideoOptions {
+  Prediction prediction = Prediction::model;
+  Difference difference = Difference::full;
+  double quantizer_scale = 16;     // 1..31, real-valued, of P pictures
+  double key_quantizer_scale = 0;  // of pictures that stand alone; 0: key_quantizer_for(options)
+  int key_interval = 132;          // 1..132: pictures from one that stands alone to the next
+  int picture_rate_code = 3;       // for the headers only
+  mpeg1::Effort effort = mpeg1::Effort::normal;
+};
+
+// Where model prediction carries on what a key picture holds, a finer key picture pays for itself many times: a quarter
+// of quantizer_scale; else quantizer_scale.
+double key_quantizer_for(const AssistedVideoOptions& options);
+
+// One frame as the server has it. All of one size; depth and ids are L's.
+struct AssistedFrame {
+  ConstRgbView high, low;
+  PlaneView<const float> depth;
+  PlaneView<const uint32_t> id;
+  const raster::Camera& camera;
+};
+
+// What both sides know of the pictures before the first one.
+struct AssistedScene {
+  int width = 0, height = 0;           // 1..mpeg1::kMaxWidth, kMaxHeight
+  const raster::Scene* low = nullptr;  // what L draws, read in create() only
+  int samples = 1;                     // of L, a pixel
+};
+
+struct AssistedReport {
+  bool is_key = false;
+  uint64_t bytes = 0;
+  double quantizer_scale = 0;
+  double carried_share = 0;  // of the luma samples that model prediction found in the frame before
+  int skipped_macroblocks = 0, coded_macroblocks = 0, intra_macroblocks = 0;
+};
+
+// One object, one thread at a time.
+class AssistedEncoder {
+ public:
+  // Fails with bad_argument: sizes, ranges, block prediction of full differences.
+  static Result<AssistedEncoder> create(const AssistedScene& scene, const AssistedVideoOptions& options,
+                                        Isa isa = best_isa());
+  ~AssistedEncoder();
+  AssistedEncoder(AssistedEncoder&&) noexcept;
+  AssistedEncoder& operator=(AssistedEncoder&&) noexcept;
+
+  // Codes the next frame; its bytes are appended to `out`. force_key: it stands alone. quantizer_scale > 0: instead of
+  // the options'.
+  Result<AssistedReport> encode(const AssistedFrame& frame, Bytes& out, bool force_key = false,
+                                double quantizer_scale = 0);
+
+  // What the client shows for the last frame, bit for bit. Of the frames' size.
+  void composite(ConstRgbView low, RgbView shown) const;
+
+ private:
+  struct State;
+  explicit AssistedEncoder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// One object, one thread at a time.
+class AssistedDecoder {
+ public:
+  static Result<AssistedDecoder> create(const AssistedScene& scene, const Limits& limits = {}, Isa isa = best_isa());
+  ~AssistedDecoder();
+  AssistedDecoder(AssistedDecoder&&) noexcept;
+  AssistedDecoder& operator=(AssistedDecoder&&) noexcept;
+
+  // One frame's bytes and the client's own rendering of it become the picture to show. Fails with truncated or corrupt;
+  // the next picture that stands alone puts everything right again. Where a frame before was lost, model prediction
+  // goes on from the last one that arrived: approximate until then.
+  Result<void> decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
+                      PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown);
+
+  // The last picture stood alone.
+  bool last_was_key() const;
+
+ private:
+  struct State;
+  explicit AssistedDecoder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pac::sim

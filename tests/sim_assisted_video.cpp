@@ -1,0 +1,210 @@
+// MPEG-1 between server and client: no drift in any mode, on any instruction set; recovery after a loss; matched bytes.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/metrics.h"
+#include "mpeg1/mpeg1.h"
+#include "sim/animation.h"
+#include "sim/client.h"
+#include "sim/difference.h"
+#include "sim/packet.h"
+#include "sim/server.h"
+#include "sim/video_sequence.h"
+#include "tests/support/small_scene.h"
+
+namespace {
+
+using namespace pac;
+using sim::Difference;
+using sim::Prediction;
+
+struct Mode {
+  Prediction prediction;
+  Difference difference;
+};
+
+constexpr Mode kModes[] = {{Prediction::none, Difference::halved},
+                           {Prediction::none, Difference::full},
+                           {Prediction::block, Difference::halved},
+                           {Prediction::model, Difference::halved},
+                           {Prediction::model, Difference::full}};
+
+sim::Server make_server(const Mode& mode, int key_interval = 132, Isa isa = best_isa(), double quantizer = 6) {
+  sim::SceneSet scene = test::small_scene(false);
+  const auto split = sim::make_split("texture", scene, {4});
+  REQUIRE(split.ok());
+  sim::ServerOptions options;
+  options.width = 90;  // no multiple of 16
+  options.height = 71;
+  options.codec = sim::Codec::mpeg1;
+  options.video.prediction = mode.prediction;
+  options.video.difference = mode.difference;
+  options.video.key_interval = key_interval;
+  options.video.quantizer_scale = quantizer;
+  options.isa = isa;
+  auto server = sim::Server::create(std::move(scene), *split, options);
+  REQUIRE(server.ok());
+  return std::move(*server);
+}
+
+sim::Client make_client(const sim::Server& server, Isa isa = best_isa()) {
+  sim::ClientOptions options;
+  options.isa = isa;
+  auto client = sim::Client::create(server.session(), options);
+  REQUIRE(client.ok());
+  return std::move(*client);
+}
+
+// A walk that never comes back to where it was.
+Bytes send(sim::Server& server, int number) {
+  auto packet = server.frame(static_cast<uint32_t>(number), test::small_camera(number % 40, 90.0f / 71.0f));
+  REQUIRE(packet.ok());
+  return std::move(*packet);
+}
+
+bool shows_the_same(const Result<RgbImage>& shown, const sim::Server& server) {
+  REQUIRE(shown.ok());
+  return sim::image_hash(shown->view()) == sim::image_hash(server.last_frame().composite.view());
+}
+
+TEST_CASE("the client shows what the server predicts over 60 frames in every mode: nothing drifts") {
+  for (const Mode& mode : kModes) {
+    CAPTURE(static_cast<int>(mode.prediction));
+    CAPTURE(static_cast<int>(mode.difference));
+    sim::Server server = make_server(mode);
+    sim::Client client = make_client(server);
+    for (int number = 0; number < 60; ++number) {
+      REQUIRE(shows_the_same(client.receive(send(server, number)), server));
+      REQUIRE(client.is_exact());
+    }
+  }
+}
+
+TEST_CASE("packets are equal on every instruction set, and each set's client shows the same") {
+  sim::Server reference = make_server({Prediction::model, Difference::full}, 132, Isa::scalar);
+  sim::Server best = make_server({Prediction::model, Difference::full});
+  sim::Client scalar_client = make_client(best, Isa::scalar);
+  for (int number = 0; number < 12; ++number) {
+    const Bytes packet = send(best, number);
+    CHECK(packet == send(reference, number));
+    CHECK(shows_the_same(scalar_client.receive(packet), best));
+  }
+}
+
+TEST_CASE("after a lost frame the client goes on approximately and is exact again within one group of pictures") {
+  constexpr int kGroup = 8;
+  sim::Server server = make_server({Prediction::model, Difference::full}, kGroup);
+  sim::Client client = make_client(server);
+  for (int number = 0; number < 2 * kGroup; ++number) {
+    const Bytes packet = send(server, number);
+    if (number == 3) continue;  // lost
+    const auto shown = client.receive(packet);
+    REQUIRE(shown.ok());
+    const bool exact = number < 3 || number >= kGroup;
+    CHECK(client.is_exact() == exact);
+    if (exact) {
+      CHECK(shows_the_same(shown, server));
+    } else {
+      const sim::ServerFrame& sent = server.last_frame();
+      CHECK(rms_error(sent.high.view(), shown->view()) < rms_error(sent.high.view(), sent.low.view()));
+    }
+  }
+}
+
+TEST_CASE("a key frame on request ends the damage at once") {
+  sim::Server server = make_server({Prediction::model, Difference::full});
+  sim::Client client = make_client(server);
+  REQUIRE(client.receive(send(server, 0)).ok());
+  send(server, 1);  // lost
+  REQUIRE(client.receive(send(server, 2)).ok());
+  CHECK(!client.is_exact());
+  server.request_key();
+  CHECK(shows_the_same(client.receive(send(server, 3)), server));
+  CHECK(client.is_exact());
+  CHECK(server.last_frame().video.is_key);
+}
+
+TEST_CASE("full differences pass the quality at which halved ones stop") {
+  double rms[2];
+  for (const Difference difference : {Difference::halved, Difference::full}) {
+    sim::Server server = make_server({Prediction::model, difference}, 132, best_isa(), 1);
+    for (int number = 0; number < 3; ++number) send(server, number);
+    const sim::ServerFrame& sent = server.last_frame();
+    rms[static_cast<size_t>(difference)] = rms_error(sent.high.view(), sent.composite.view());
+  }
+  MESSAGE("rms of halved differences " << rms[0] << ", of full ones " << rms[1]);
+  CHECK(rms[1] < rms[0]);
+}
+
+TEST_CASE("differences coded by blocks alone are a stream that an ordinary decoder plays") {
+  sim::Server server = make_server({Prediction::block, Difference::halved});
+  Bytes stream;
+  for (int number = 0; number < 5; ++number) {
+    const Bytes packet = send(server, number);
+    const auto fields = sim::read_frame_packet(packet);
+    REQUIRE(fields.ok());
+    stream.insert(stream.end(), fields->difference.begin() + 1, fields->difference.end());
+  }
+  mpeg1::DecoderOptions strict;
+  strict.strict = true;
+  mpeg1::Decoder decoder(strict);
+  decoder.feed(stream);
+  decoder.finish();
+  int pictures = 0;
+  for (;;) {
+    const auto picture = decoder.next();
+    REQUIRE(picture.ok());
+    if (*picture == nullptr) break;
+    ++pictures;
+  }
+  CHECK(pictures == 5);
+}
+
+TEST_CASE("MPEG-1: the polygon-assisted arm takes at most the image-based one's bytes, and looks better") {
+  sim::AnimationOptions options;
+  options.render.width = 96;
+  options.render.height = 80;
+  options.render.samples = 4;
+  options.frames = 6;
+  options.codec = sim::VideoCodec::mpeg1;
+  options.quantizer_scale = 12;
+  const auto result = sim::run_animation(test::small_scene(false), test::small_camera, options);
+  REQUIRE(result.ok());
+  CHECK(result->polygon_assisted.bytes <= result->image_based.bytes);
+  std::vector<sim::FrameScores> scores[2];
+  for (const auto& frame : result->image_based.frames) scores[0].push_back(frame.scores);
+  for (const auto& frame : result->polygon_assisted.frames) scores[1].push_back(frame.scores);
+  CHECK(sim::summarize(scores[1], 0).mean > sim::summarize(scores[0], 0).mean + 2);
+}
+
+TEST_CASE("the quantizer for a size: within 1 % where there is one, an end of the scale where there is none") {
+  const auto bytes_at = [](double q) -> Result<uint64_t> { return static_cast<uint64_t>(100000.0 / (q + 0.3)); };
+  for (const uint64_t target : {4000u, 9000u, 30000u, 70000u}) {
+    const auto quantizer = sim::quantizer_for_bytes(target, 12, bytes_at);
+    REQUIRE(quantizer.ok());
+    const auto bytes = static_cast<double>(*bytes_at(*quantizer));
+    CHECK(bytes <= static_cast<double>(target));
+    CHECK(bytes >= 0.985 * static_cast<double>(target));
+  }
+  CHECK(*sim::quantizer_for_bytes(100, 12, bytes_at) == 31.0);
+  CHECK(*sim::quantizer_for_bytes(1000000, 12, bytes_at) == 1.0);
+}
+
+TEST_CASE("video refuses what it cannot do") {
+  sim::SceneSet scene = test::small_scene(false);
+  const auto split = sim::make_split("texture", scene, {4});
+  sim::ServerOptions options;
+  options.codec = sim::Codec::mpeg1;
+  options.transmit_model = true;
+  CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
+  options.transmit_model = false;
+  options.video.prediction = Prediction::block;  // with full differences
+  CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
+  options.video = {};
+  options.video.key_interval = 0;
+  CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
+}
+
+}  // namespace
