@@ -64,7 +64,13 @@ void light_corners(const Surface& surface, const TileKernels& kernels, int n, co
       color[c][i] = static_cast<float>(colors[from][c]);
     }
   }
-  kernels.light(surface.lighting, n, normal[0], position[0], color[0], specular[0]);
+  alignas(32) float visibility[kMaxKernelLights + 1][kBatchLanes];
+  const uint8_t mask = static_cast<uint8_t>((1 << n) - 1);
+  if (surface.shadows != nullptr)
+    cast_shadows(*surface.shadows, kernels, surface.lighting, 1, &mask, {0, surface.shadows->samples.count}, normal[0],
+                 position[0], visibility[0]);
+  kernels.light(surface.lighting, n, normal[0], position[0], surface.shadows != nullptr ? visibility[0] : nullptr,
+                color[0], specular[0]);
   for (int i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c) {
       out[i][c] = color[c][i];

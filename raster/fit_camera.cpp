@@ -114,15 +114,17 @@ Camera orbit_camera(const Scene& scene, float aspect, int frame) {
 }
 
 void set_default_lights(Scene& scene) {
-  const auto light = [](glm::vec3 from, glm::vec3 color) {
+  const auto light = [](glm::vec3 from, glm::vec3 color, float radius) {
     const float length = std::sqrt(from.x * from.x + from.y * from.y + from.z * from.z);
     Light result;
     result.direction = -from / length;
     result.color = color;
+    result.radius = radius;
     return result;
   };
-  scene.lights = {light({-0.4f, 1.0f, 1.0f}, {0.80f, 0.78f, 0.74f}), light({1.0f, 0.3f, 0.3f}, {0.22f, 0.25f, 0.30f}),
-                  light({0.2f, 0.6f, -1.0f}, {0.25f, 0.25f, 0.25f})};
+  scene.lights = {light({-0.4f, 1.0f, 1.0f}, {0.80f, 0.78f, 0.74f}, 0.10f),
+                  light({1.0f, 0.3f, 0.3f}, {0.22f, 0.25f, 0.30f}, 0.25f),
+                  light({0.2f, 0.6f, -1.0f}, {0.25f, 0.25f, 0.25f}, 0.10f)};
   scene.ambient_light = glm::vec3(0.25f);
   scene.background = glm::vec3(0.86f, 0.88f, 0.90f);
 }

@@ -15,7 +15,7 @@ inline constexpr int kOrbitFrames = 120;
 Camera orbit_camera(const Scene& scene, float aspect, int frame);
 
 // Replaces the scene's lights: a warm key light from above left, a cool fill light from the right, a rim light from
-// behind, a quarter of ambient light; a light gray background.
+// behind, each with a size as soft boxes have, a quarter of ambient light; a light gray background.
 void set_default_lights(Scene& scene);
 
 }  // namespace pac::raster

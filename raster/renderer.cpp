@@ -9,6 +9,7 @@
 #include "base/kernels/kernels.h"
 #include "base/parallel.h"
 #include "raster/draw_list.h"
+#include "raster/occluder_tree.h"
 #include "raster/sample_pattern.h"
 #include "raster/surface.h"
 #include "raster/tile_painter.h"
@@ -21,8 +22,11 @@ struct Renderer::State {
   ThreadPool pool;
   DrawList draw_list;
   std::vector<Surface> surfaces[2];
+  OccluderTree occluders;
+  ShadowScene shadows[2];
   std::vector<std::unique_ptr<TilePainter>> painters;  // one a thread
 
+  const ShadowScene* prepare_shadows(const Scene& scene, const RenderQuality& quality, ShadowScene& out);
   Result<RenderStats> draw(const Scene& scene, const Camera& camera, const RenderQuality* const qualities[2],
                            PaintInput& input);
 };
@@ -76,9 +80,23 @@ Result<Renderer> Renderer::create(int width, int height, const RendererOptions& 
   if (width > max_side || height > max_side) return Failure{Error::limit_exceeded, 0, "image side over the limit"};
   const Kernels* kernels = kernels_for(options.isa);
   if (kernels == nullptr) return Failure{Error::bad_argument, 0, "instruction set not available"};
-  std::unique_ptr<State> state(new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}});
+  std::unique_ptr<State> state(new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}});
   for (int i = 0; i < state->pool.thread_count(); ++i) state->painters.push_back(std::make_unique<TilePainter>());
   return Renderer(std::move(state));
+}
+
+// Null where the quality casts no shadows.
+const ShadowScene* Renderer::State::prepare_shadows(const Scene& scene, const RenderQuality& quality,
+                                                    ShadowScene& out) {
+  if (quality.lighting != Lighting::full) return nullptr;
+  occluders.update(scene.mesh);
+  out.tree = occluders.view();
+  out.offset = 2e-4f * occluders.diagonal();
+  const float reach = scene.ambient_reach;
+  out.ambient_reach = reach < 0 ? 0.2f * occluders.diagonal() : reach <= 0x1p60f ? reach : 0.0f;
+  const int count = std::clamp(quality.light_samples, 1, kMaxLightSamples);
+  if (out.samples.count != count) out.samples = make_light_samples(count);
+  return &out;
 }
 
 Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& camera,
@@ -93,7 +111,8 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
   for (int r = 0; r < 2; ++r) {
     input.surfaces[r] = nullptr;
     if (qualities[r] == nullptr) continue;
-    PAC_CHECK(prepare_surfaces(scene, camera, *qualities[r], surfaces[r]));
+    const ShadowScene* cast = prepare_shadows(scene, *qualities[r], shadows[r]);
+    PAC_CHECK(prepare_surfaces(scene, camera, *qualities[r], cast, surfaces[r]));
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
   }
   auto stats = draw_list.build(frame, pool);

@@ -17,11 +17,19 @@ enum class Shading : uint8_t {
   phong,    // normals interpolated, lit at each sample
 };
 
+// How much light finds its way to lit materials; colors of unlit ones are final.
+enum class Lighting : uint8_t {
+  local,  // every light reaches every point that faces it, ambient light reaches all
+  full,   // shadows of all lights, soft ones where the light has a size, and occlusion of the ambient light: by rays
+};
+
 // What one rendering does. The two renderings of a split differ only in this and, for tessellation, in the Scene.
 struct RenderQuality {
   Shading shading = Shading::gouraud;
-  bool texture = true;           // false: every texture is replaced by its mean color
-  int samples = 1;               // 1, 4, 16 or 64 a pixel, box-filtered
+  bool texture = true;  // false: every texture is replaced by its mean color
+  int samples = 1;      // 1, 4, 16 or 64 a pixel, box-filtered
+  Lighting lighting = Lighting::local;
+  int light_samples = 16;  // full lighting: rays a pixel to each light with a size, and of ambient occlusion: 1..64
   bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
 
   bool operator==(const RenderQuality&) const = default;

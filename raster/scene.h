@@ -60,11 +60,17 @@ struct Material {
 };
 
 struct Light {
-  enum class Kind : uint8_t { directional, point } kind = Kind::directional;
-  glm::vec3 direction{0, 0, -1};  // directional: the way the light travels, unit length
-  glm::vec3 position{0};          // point
+  enum class Kind : uint8_t { directional, point, spot } kind = Kind::directional;
+  glm::vec3 direction{0, 0, -1};  // directional, spot: the way the light travels, any length
+  glm::vec3 position{0};          // point, spot
   glm::vec3 color{1};             // no attenuation with distance unless range > 0
-  float range = 0;                // point: intensity 1 / (1 + (distance / range)^2); 0 = constant
+  float range = 0;                // point, spot: intensity 1 / (1 + (distance / range)^2); 0 = constant
+  float cone_inner = 1;           // spot: cosine of the angle from the axis up to which it is full ...
+  float cone_outer = 0;           // ... and of the angle from which on it is dark, linear in the cosine between
+  // Under full lighting: the radius of the ball that shines (directional: tangent of the light's angular radius), which
+  // makes shadows soft; and whether anything shades it at all.
+  float radius = 0;
+  bool casts_shadows = true;
 };
 
 struct Scene {
@@ -74,6 +80,9 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Light> lights;
   glm::vec3 ambient_light{1.0f};
+  // Under full lighting, surfaces within this distance shade each other from the ambient light. 0: nothing does.
+  // Negative: a fifth of the diagonal of the mesh's bounding box.
+  float ambient_reach = -1;
   glm::vec3 background{0.0f};
 };
 

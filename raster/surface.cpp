@@ -16,21 +16,41 @@ constexpr float kColorLimit = 1024.0f;         // 1 = full intensity
 constexpr float kPositionLimit = 0x1p60f;      // squares stay finite
 constexpr float kSmallestRange = 1.0f / 1e6f;  // of a point light
 
-void set_light(const Light& light, const Material& material, KernelLight& out) {
-  out.is_point = light.kind == Light::Kind::point ? 1 : 0;
+// Unit length, or zero where there is no direction.
+void set_direction(const glm::vec3& direction, float sign, float out[3]) {
   float squared = 0;
+  for (int c = 0; c < 3; ++c) {
+    out[c] = sign * bounded(direction[c], 0x1p40f);
+    squared = squared + out[c] * out[c];
+  }
+  const float scale = squared >= 0x1p-100f ? 1.0f / std::sqrt(squared) : 0.0f;
+  for (int c = 0; c < 3; ++c) out[c] = out[c] * scale;
+}
+
+// Linear in the cosine: 0 at the outer angle, 1 at the inner one.
+void set_cone(const Light& light, KernelLight& out) {
+  out.cone_scale = 0;
+  out.cone_offset = 1;
+  for (float& component : out.axis) component = 0;
+  if (light.kind != Light::Kind::spot) return;
+  set_direction(light.direction, 1.0f, out.axis);
+  const float outer = bounded(light.cone_outer, 1.0f);
+  out.cone_scale = 1.0f / std::max(bounded(light.cone_inner, 1.0f) - outer, 1e-4f);
+  out.cone_offset = -outer * out.cone_scale;
+}
+
+void set_light(const Light& light, const Material& material, KernelLight& out) {
+  out.is_point = light.kind != Light::Kind::directional ? 1 : 0;
   for (int c = 0; c < 3; ++c) {
     const float color = bounded(light.color[c], kColorLimit) * 255.0f;
     out.diffuse[c] = color * bounded(material.diffuse[c], kColorLimit);
     out.specular[c] = color * bounded(material.specular[c], kColorLimit);
-    out.vector[c] =
-        out.is_point != 0 ? bounded(light.position[c], kPositionLimit) : -bounded(light.direction[c], 0x1p40f);
-    squared = squared + out.vector[c] * out.vector[c];
+    out.vector[c] = bounded(light.position[c], kPositionLimit);
   }
-  if (out.is_point == 0) {  // unit length; a light without direction gives nothing
-    const float scale = squared >= 0x1p-100f ? 1.0f / std::sqrt(squared) : 0.0f;
-    for (float& component : out.vector) component = component * scale;
-  }
+  if (out.is_point == 0) set_direction(light.direction, -1.0f, out.vector);
+  set_cone(light, out);
+  out.radius = std::max(bounded(light.radius, 0x1p40f), 0.0f);
+  out.has_shadow = light.casts_shadows ? 1 : 0;
   out.inverse_range = light.range >= kSmallestRange ? 1.0f / light.range : 0.0f;
 }
 
@@ -105,7 +125,7 @@ AttributeLayout layout_of(const Surface& surface, bool textured) {
 }  // namespace
 
 Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const RenderQuality& quality,
-                              std::vector<Surface>& surfaces) {
+                              const ShadowScene* shadows, std::vector<Surface>& surfaces) {
   if (scene.lights.size() > kMaxKernelLights)
     return Failure{Error::limit_exceeded, scene.lights.size(), "more lights than 16"};
   surfaces.resize(scene.materials.size());
@@ -127,6 +147,7 @@ Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const Re
                             ? static_cast<float>(texture->mean_color()[static_cast<size_t>(c)]) * (1.0f / 255.0f)
                             : 1.0f;
     surface.lighting.light_count = surface.lighting.has_specular = 0;
+    surface.shadows = quality.lighting == Lighting::full ? shadows : nullptr;
     if (surface.lit != Surface::Lit::no) set_lighting(scene, camera, material, surface);
     surface.layout = layout_of(surface, textured);
     surface.lod_bias = bias;

@@ -8,6 +8,7 @@
 #include "base/result.h"
 #include "raster/renderer.h"
 #include "raster/scene.h"
+#include "raster/shadows.h"
 
 namespace pac::raster {
 
@@ -30,14 +31,16 @@ struct Surface {
   AttributeLayout layout;
   float mean[3] = {1, 1, 1};  // the mean texel / 255 where a texture is switched off
   LightingParameters lighting;
+  const ShadowScene* shadows = nullptr;  // full lighting
   TextureSampler sampler;
   float lod_bias = 0;
   uint32_t batch = 0;  // surfaces of equal `batch` may be shaded together: the number of the first of them
 };
 
-// One Surface a material. Fails with corrupt (texture index out of range) or limit_exceeded (too many lights, texture
-// sides over 32768). The scene's textures must outlive the surfaces.
+// One Surface a material; `shadows` is given where the quality asks for full lighting. Fails with corrupt (texture
+// index out of range) or limit_exceeded (too many lights, texture sides over 32768). The scene's textures and `shadows`
+// must outlive the surfaces.
 Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const RenderQuality& quality,
-                              std::vector<Surface>& surfaces);
+                              const ShadowScene* shadows, std::vector<Surface>& surfaces);
 
 }  // namespace pac::raster

@@ -24,7 +24,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
     if (s == 0) write_depth_and_id(input, area);
     for (int r = 0; r < n_renderings; ++r) {
       n_packs_ = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
-      shade(input, r, origin);
+      shade(input, {r, s, origin});
     }
   }
   write_color(input, area);
@@ -38,7 +38,8 @@ void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
 }
 
 // Packs of one batch state together, in calls of up to kBatchPacks.
-void TilePainter::shade(const PaintInput& input, int rendering, SamplePosition origin) {
+void TilePainter::shade(const PaintInput& input, const Pass& pass) {
+  const int rendering = pass.rendering;
   const std::vector<Surface>& surfaces = *input.surfaces[rendering];
   for (int left = n_packs_; left > 0;) {
     const uint32_t state = packs_[0].triangle->state[rendering];
@@ -52,30 +53,43 @@ void TilePainter::shade(const PaintInput& input, int rendering, SamplePosition o
     }
     left = rest;
     for (int i = 0; i < n; i += kBatchPacks)
-      shade_batch(input, rendering, surfaces[state], origin, batch_ + i, std::min(kBatchPacks, n - i));
+      shade_batch(input, pass, surfaces[state], batch_ + i, std::min(kBatchPacks, n - i));
   }
 }
 
-void TilePainter::shade_batch(const PaintInput& input, int rendering, const Surface& surface, SamplePosition origin,
-                              const LanePack* packs, int n) {
+// The rays to lights with a size, and into the sky, are shared out among the samples of a pixel.
+const float* TilePainter::cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface,
+                                          const LanePack* packs, int n) {
+  if (surface.shadows == nullptr) return nullptr;
+  uint8_t masks[kBatchPacks];
+  for (int i = 0; i < n; ++i) masks[i] = packs[i].mask;
+  const int n_rays = std::max(surface.shadows->samples.count / static_cast<int>(input.pattern.size()), 1);
+  cast_shadows(*surface.shadows, input.kernels->tile, surface.lighting, n, masks, {pass.sample * n_rays, n_rays},
+               rows_ + surface.layout.normal * kBatchLanes, rows_ + surface.layout.position * kBatchLanes, visibility_);
+  return visibility_;
+}
+
+void TilePainter::shade_batch(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs,
+                              int n) {
   const TileKernels& kernels = input.kernels->tile;
   const AttributeLayout& layout = surface.layout;
   const bool textured = layout.uv >= 0;
-  InterpolateTarget target{rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
+  InterpolateTarget target{pass.rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
   if (textured) {
     target.lod = lod_;
     target.width = static_cast<float>(surface.sampler.width[0]);
     target.height = static_cast<float>(surface.sampler.height[0]);
   }
-  kernels.interpolate(packs, n, origin, target);
+  kernels.interpolate(packs, n, pass.origin, target);
   const auto row = [&](int attribute) { return rows_ + attribute * kBatchLanes; };
   const float* specular = layout.specular >= 0 ? row(layout.specular) : nullptr;
   if (layout.normal >= 0) {
-    kernels.light(surface.lighting, 8 * n, row(layout.normal), row(layout.position), rows_, specular_);
+    const float* visibility = cast_shadows_of(input, pass, surface, packs, n);
+    kernels.light(surface.lighting, 8 * n, row(layout.normal), row(layout.position), visibility, rows_, specular_);
     if (surface.lighting.has_specular != 0) specular = specular_;
   }
   if (textured) kernels.sample_texture(surface.sampler, 8 * n, row(layout.uv), row(layout.uv + 1), lod_, texels_);
-  kernels.accumulate(packs, n, rows_, textured ? texels_ : nullptr, specular, input.background, sums_[rendering]);
+  kernels.accumulate(packs, n, rows_, textured ? texels_ : nullptr, specular, input.background, sums_[pass.rendering]);
 }
 
 void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {

@@ -38,9 +38,16 @@ class TilePainter {
     int x, y, width, height;
   };
   void rasterize(const PaintInput& input, SamplePosition origin);
-  void shade(const PaintInput& input, int rendering, SamplePosition origin);
-  void shade_batch(const PaintInput& input, int rendering, const Surface& surface, SamplePosition origin,
-                   const LanePack* packs, int n);
+  // What one pass over the samples of the tile draws.
+  struct Pass {
+    int rendering;
+    int sample;  // of the pattern
+    SamplePosition origin;
+  };
+  void shade(const PaintInput& input, const Pass& pass);
+  void shade_batch(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs, int n);
+  const float* cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs,
+                               int n);
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
   void write_color(const PaintInput& input, const Area& area) const;
 
@@ -51,6 +58,7 @@ class TilePainter {
   alignas(64) float lod_[kBatchLanes];
   alignas(64) float texels_[3 * kBatchLanes];
   alignas(64) float specular_[3 * kBatchLanes];
+  alignas(64) float visibility_[(kMaxKernelLights + 1) * kBatchLanes];
   std::vector<const RasterTriangle*> triangles_;
   LanePack packs_[kTilePixels], batch_[kTilePixels];
   int n_packs_ = 0;

@@ -15,7 +15,7 @@ namespace pac::sim {
 namespace {
 
 constexpr uint8_t kNormals = 1, kTexcoords = 2;
-constexpr size_t kMaterialBytes = 60, kLightBytes = 44, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12;
+constexpr size_t kMaterialBytes = 60, kLightBytes = 56, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12;
 
 void write_vec3(ByteWriter& writer, const glm::vec3& v) {
   for (int axis = 0; axis < 3; ++axis) writer.f32(v[axis]);
@@ -132,18 +132,24 @@ void write_light(ByteWriter& writer, const raster::Light& light) {
   write_vec3(writer, light.position);
   write_vec3(writer, light.color);
   writer.f32(light.range);
+  writer.f32(light.cone_inner);
+  writer.f32(light.cone_outer);
+  writer.f32(light.radius);
 }
 
 Result<raster::Light> read_light(ByteReader& reader) {
   const size_t at = reader.position();
   raster::Light light;
   const uint32_t kind = reader.u32();
-  if (kind > 1) return Failure{Error::corrupt, at, "unknown kind of light"};
+  if (kind > 2) return Failure{Error::corrupt, at, "unknown kind of light"};
   light.kind = static_cast<raster::Light::Kind>(kind);
   light.direction = read_vec3(reader);
   light.position = read_vec3(reader);
   light.color = read_vec3(reader);
   light.range = reader.f32();
+  light.cone_inner = reader.f32();
+  light.cone_outer = reader.f32();
+  light.radius = reader.f32();
   return light;
 }
 

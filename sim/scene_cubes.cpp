@@ -74,6 +74,7 @@ SceneSet build_cubes(uint32_t seed) {
   fill.color = {0.18f, 0.21f, 0.28f};
   back.direction = glm::normalize(glm::vec3(-0.35f, -0.45f, 0.85f));
   back.color = {0.50f, 0.46f, 0.42f};
+  sun.radius = fill.radius = back.radius = 0.04f;
   set.fine.lights = {sun, fill, back};
   set.fine.background = rgb8(30, 34, 46);
   set.default_split = "texture";

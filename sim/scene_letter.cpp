@@ -73,6 +73,7 @@ raster::Light point_light(glm::vec3 position, glm::vec3 color) {
   light.kind = raster::Light::Kind::point;
   light.position = position;
   light.color = color;
+  light.radius = 0.5f;  // soft boxes
   return light;
 }
 

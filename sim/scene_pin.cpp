@@ -152,8 +152,12 @@ Paint surface_pattern(const glm::vec3& p, uint32_t seed) {
   return paint;
 }
 
+struct Shaded {
+  glm::vec3 full, local;  // local: without what the lacquer mirrors
+};
+
 // The surface shader: three diffuse lights, their highlights, and a Fresnel-weighted mirror of the studio.
-glm::vec3 shade(const Micropoint& point, const Paint& paint, const glm::vec3& eye) {
+Shaded shade(const Micropoint& point, const Paint& paint, const glm::vec3& eye) {
   struct PinLight {
     glm::vec3 direction, color;  // towards the light
   };
@@ -177,7 +181,8 @@ glm::vec3 shade(const Micropoint& point, const Paint& paint, const glm::vec3& ey
   const float facing = clamp01(glm::dot(n, to_eye)), grazing = 1.0f - facing;
   const float fresnel = 0.045f + 0.955f * grazing * grazing * grazing * grazing * grazing;
   const glm::vec3 mirrored = n * (2.0f * glm::dot(n, to_eye)) - to_eye;
-  return radiance + (0.28f * highlight + (0.25f + fresnel) * 0.55f * studio(mirrored)) * paint.gloss;
+  return {radiance + (0.28f * highlight + (0.25f + fresnel) * 0.55f * studio(mirrored)) * paint.gloss,
+          radiance + 0.28f * highlight * paint.gloss};
 }
 
 void encode_color(const glm::vec3& radiance, uint8_t* color) {
@@ -213,8 +218,8 @@ Paint filtered_pattern(const Patch& patch, float along, float around, float cell
 }
 
 // Dices every patch into n_up x n_around micropolygons. Patches share the vertices of their common edges. The pattern
-// is filtered by filter x filter samples a micropolygon.
-Mesh dice(int n_up, int n_around, int filter, uint32_t seed) {
+// is filtered by filter x filter samples a micropolygon. `local_colors`: RGBA a vertex without the mirrored studio.
+Mesh dice(int n_up, int n_around, int filter, uint32_t seed, std::vector<uint8_t>* local_colors) {
   Mesh mesh;
   const auto columns = static_cast<uint32_t>(kQuadrants * n_around);
   const int rows = kRings * n_up;
@@ -241,8 +246,13 @@ Mesh dice(int n_up, int n_around, int filter, uint32_t seed) {
       }
       vertex.texcoord[0] = static_cast<float>(column) / static_cast<float>(columns);
       vertex.texcoord[1] = 1.0f - static_cast<float>(row) / static_cast<float>(rows);
-      encode_color(shade(point, paint, still_eye()), vertex.color);
+      const Shaded shaded = shade(point, paint, still_eye());
+      encode_color(shaded.full, vertex.color);
       mesh.vertices.push_back(vertex);
+      if (local_colors == nullptr) continue;
+      uint8_t local[4];
+      encode_color(shaded.local, local);
+      local_colors->insert(local_colors->end(), local, local + 4);
     }
   }
   for (int row = 0; row < rows; ++row) {
@@ -277,8 +287,8 @@ raster::Scene pin_scene(const char* name, Mesh mesh) {
 
 SceneSet build_pin(uint32_t seed) {
   SceneSet set;
-  set.fine = pin_scene("pin", dice(kFineRate, kFineRate, 2, seed));
-  set.coarse = pin_scene("pin-coarse", dice(kCoarseUp, kCoarseAround, 6, seed));
+  set.fine = pin_scene("pin", dice(kFineRate, kFineRate, 2, seed, &set.local_colors));
+  set.coarse = pin_scene("pin-coarse", dice(kCoarseUp, kCoarseAround, 6, seed, nullptr));
   set.width = 320;
   set.height = 800;
   set.default_split = "tessellation";

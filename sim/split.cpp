@@ -41,18 +41,22 @@ Result<uint32_t> parse_parts(std::string_view names) {
   return parts;
 }
 
+bool has_baked_lighting(const SceneSet& scene) {
+  return !scene.local_colors.empty() && scene.local_colors.size() == scene.fine.mesh.vertices.size() * 4;
+}
+
 Result<void> check_scene(uint32_t parts, const SceneSet& scene) {
   const bool tessellation = (parts & 1u << kTessellation) != 0, lighting = (parts & 1u << kLighting) != 0;
   if (tessellation && scene.coarse.mesh.faces.empty())
     return Failure{Error::bad_argument, 0, "split tessellation: this scene has no coarse model"};
-  if (lighting && tessellation)
+  if (lighting && tessellation && !scene.local_colors.empty())
     return Failure{Error::bad_argument, 0, "splits lighting and tessellation do not combine: coarse colors are baked"};
-  if (lighting && (scene.local_colors.empty() || scene.local_colors.size() != scene.fine.mesh.vertices.size() * 4))
-    return Failure{Error::bad_argument, 0, "split lighting: this scene has no baked lighting"};
+  if (lighting && !has_baked_lighting(scene) && !has_lit_materials(scene))
+    return Failure{Error::bad_argument, 0, "split lighting: this scene has neither lit materials nor baked lighting"};
   return {};
 }
 
-void apply(Part part, Split& split) {
+void apply(Part part, const SceneSet& scene, Split& split) {
   switch (part) {
     case kTexture:
       split.low.texture = false;
@@ -71,7 +75,9 @@ void apply(Part part, Split& split) {
       split.low.texture = false;
       break;
     default:
-      split.low_lighting = Lighting::local;
+      split.high.lighting = raster::Lighting::full;
+      split.low.lighting = raster::Lighting::local;
+      if (has_baked_lighting(scene)) split.low_lighting = Lighting::local;
   }
 }
 
@@ -99,6 +105,11 @@ raster::Scene copy_of(const raster::Scene& scene, bool textured) {
 
 }  // namespace
 
+bool has_lit_materials(const SceneSet& scene) {
+  return std::any_of(scene.fine.materials.begin(), scene.fine.materials.end(),
+                     [](const raster::Material& material) { return material.lit; });
+}
+
 const char* const* split_names() {
   return kNames;
 }
@@ -115,16 +126,14 @@ Result<Split> make_split(std::string_view names, const SceneSet& scene, const Sp
   PAC_TRY(const uint32_t parts, parse_parts(names));
   PAC_CHECK(check_scene(parts, scene));
 
-  const bool any_lit = std::any_of(scene.fine.materials.begin(), scene.fine.materials.end(),
-                                   [](const raster::Material& material) { return material.lit; });
   Split split;
-  split.high.shading = any_lit ? raster::Shading::phong : raster::Shading::gouraud;
+  split.high.shading = has_lit_materials(scene) ? raster::Shading::phong : raster::Shading::gouraud;
   split.high.samples = samples;
   split.high.cull_back_faces = true;
   split.low = split.high;
   for (int part = 0; part < kPartCount; ++part) {
     if ((parts & 1u << part) == 0) continue;
-    apply(static_cast<Part>(part), split);
+    apply(static_cast<Part>(part), scene, split);
     if (!split.name.empty()) split.name += ',';
     split.name += kNames[part];
   }

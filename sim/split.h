@@ -37,7 +37,8 @@ struct SplitOptions {
 //   tessellation  H draws the fine model, L the coarse one [s.4.2]
 //   shading       H Phong, antialiased, textured; L Gouraud, 1 sample, no texture [s.4.3, the one that fails]
 //   antialiasing  as texture, with 1 sample on both sides [s.4.3, last paragraph]
-//   lighting      H the colors of the full (radiosity) solution, L those of local lighting; textures on both sides
+//   lighting      H the colors of the full (radiosity) solution, L those of local lighting; where materials are lit, H
+//                 soft shadows and ambient occlusion, L the same lights without; textures on both sides
 // Whatever a part does not name is equal on both sides: textures on, back faces culled where the material allows,
 // `samples` a pixel, and interpolation by Phong where the scene has lit materials (figure 5), by Gouraud where all
 // colors are baked (figures 2 and 3).
@@ -47,9 +48,12 @@ const char* split_summary(std::string_view part);  // one line, or null for an u
 // The split called `names`: one part, or several joined by commas ("texture,tessellation"), in any order, repeats
 // ignored. Where parts disagree, the lower quality wins on each side.
 // Fails with bad_argument: unknown name, empty list, samples not 1, 4, 16 or 64; or this scene cannot do it:
-// tessellation without a coarse model (loaded models: see add_coarse_model), lighting without baked local colors,
-// lighting together with tessellation (the coarse model has one set of colors).
+// tessellation without a coarse model (loaded models: see add_coarse_model), lighting without baked local colors
+// or lit materials, lighting together with tessellation where it is baked (the coarse model has one set of colors).
 Result<Split> make_split(std::string_view names, const SceneSet& scene, const SplitOptions& options = {});
+
+// Whether lights matter: some material is lit.
+bool has_lit_materials(const SceneSet& scene);
 
 // The model that L draws, and nothing more: fine or coarse geometry, local colors where the split says so, and where
 // L is untextured each texture cut down to its mean color (the 1x1 level). Copies; keeps nothing of `scene`.

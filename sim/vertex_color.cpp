@@ -20,7 +20,7 @@ Result<VertexLighter> VertexLighter::create(const raster::Scene& scene, const ra
   quality.shading = raster::Shading::gouraud;
   quality.texture = false;
   auto state = std::make_unique<State>();
-  PAC_CHECK(raster::prepare_surfaces(scene, camera, quality, state->surfaces));
+  PAC_CHECK(raster::prepare_surfaces(scene, camera, quality, nullptr, state->surfaces));
   state->eye = camera.eye;
   return VertexLighter(std::move(state));
 }

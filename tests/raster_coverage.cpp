@@ -166,7 +166,7 @@ TEST_CASE("clipping at the near plane and the guard band opens no cracks and cov
     const float near_plane = seed % 2 == 0 ? 0.0005f : 0.05f;
     const Camera camera = make_camera({9.9f, 0.3f, 1.0f}, {9.0f, 0.2f, -3.0f}, {0.1f, 1, 0}, 1.9f, 1, near_plane, 100);
     std::vector<Surface> surfaces;
-    REQUIRE(prepare_surfaces(scene, camera, {}, surfaces).ok());
+    REQUIRE(prepare_surfaces(scene, camera, {}, nullptr, surfaces).ok());
     const FrameInput input{&scene,
                            &camera,
                            kernels_for(Isa::scalar),

@@ -171,6 +171,9 @@ TEST_CASE("light: every instruction set gives the scalar bits, degenerate normal
         KernelLight& light = m.lights[i];
         light.is_point = random.bits() % 2 == 0 ? 1 : 0;
         light.inverse_range = random.bits() % 2 == 0 ? 0.0f : random.unit();
+        light.cone_scale = random.bits() % 2 == 0 ? 0.0f : random.between(1, 50);
+        light.cone_offset = light.cone_scale == 0 ? 1.0f : random.between(-30, 1);
+        for (float& component : light.axis) component = random.between(-1, 1);
         for (int c = 0; c < 3; ++c) {
           light.vector[c] = random.between(-1, 1);
           light.diffuse[c] = random.between(0, 255);
@@ -191,8 +194,11 @@ TEST_CASE("light: every instruction set gives the scalar bits, degenerate normal
       }
       std::vector<float> color2 = color, specular2 = specular;
       const int n = 1 + static_cast<int>(random.bits() % kBatchLanes);
-      scalar.tile.light(m, n, normal.data(), position.data(), color.data(), specular.data());
-      table.tile.light(m, n, normal.data(), position.data(), color2.data(), specular2.data());
+      std::vector<float> factors((kMaxKernelLights + 1) * kBatchLanes);
+      for (float& f : factors) f = random.unit();
+      const float* visibility = random.bits() % 2 == 0 ? nullptr : factors.data();
+      scalar.tile.light(m, n, normal.data(), position.data(), visibility, color.data(), specular.data());
+      table.tile.light(m, n, normal.data(), position.data(), visibility, color2.data(), specular2.data());
       REQUIRE(std::memcmp(color.data(), color2.data(), color.size() * sizeof(float)) == 0);
       REQUIRE(std::memcmp(specular.data(), specular2.data(), specular.size() * sizeof(float)) == 0);
       for (int k = 0; k < n; ++k) REQUIRE(std::isfinite(color[static_cast<size_t>(k)]));
@@ -219,7 +225,7 @@ TEST_CASE("sample_texture: every instruction set gives the scalar bits for every
                                     : mode / 2 == 1 ? Filter::bilinear
                                                     : Filter::trilinear;
         std::vector<Surface> surfaces;
-        REQUIRE(prepare_surfaces(scene, test_scenes::room_camera(), {}, surfaces).ok());
+        REQUIRE(prepare_surfaces(scene, test_scenes::room_camera(), {}, nullptr, surfaces).ok());
         std::vector<float> u(kBatchLanes), v(kBatchLanes), lod(kBatchLanes), expected(3 * kBatchLanes),
             actual(3 * kBatchLanes);
         for (int round = 0; round < 6; ++round) {

@@ -90,12 +90,23 @@ TEST_CASE("figure 5's letter is Phong-shaded on both sides, baked scenes are Gou
   CHECK(split("texture", test::small_scene(false)).low.shading == raster::Shading::gouraud);
 }
 
+TEST_CASE("the lighting split of lit materials casts shadows in H alone, in one traversal") {
+  sim::SceneSet lit = test::small_scene(true);
+  lit.local_colors.clear();
+  const sim::Split made = split("lighting", lit);
+  CHECK(made.high.lighting == raster::Lighting::full);
+  CHECK(made.low.lighting == raster::Lighting::local);
+  CHECK(made.low_lighting == sim::Lighting::full);
+  CHECK(made.single_pass());
+  CHECK(split("texture", lit).high.lighting == raster::Lighting::local);
+}
+
 TEST_CASE("a split that the scene cannot do says why") {
   sim::SceneSet bare = test::small_scene(false);
   bare.coarse = {};
   bare.local_colors.clear();
   CHECK(failure_text("tessellation", bare).find("no coarse model") != std::string::npos);
-  CHECK(failure_text("lighting", bare).find("no baked lighting") != std::string::npos);
+  CHECK(failure_text("lighting", bare).find("neither lit materials nor baked lighting") != std::string::npos);
   const sim::SceneSet scene = test::small_scene(false);
   CHECK(failure_text("lighting,tessellation", scene).find("do not combine") != std::string::npos);
   for (const char* unknown : {"", ",", "texture,", "Texture", "textures", " texture", "texture;shading"})

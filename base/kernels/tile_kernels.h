@@ -78,7 +78,13 @@ struct KernelLight {
   float diffuse[3];     // light color * material's diffuse * 255
   float specular[3];    // light color * material's specular * 255
   float inverse_range;  // point: intensity 1 / (1 + (distance * inverse_range)^2)
-  int32_t is_point;
+  float axis[3];        // spot: unit vector along the beam
+  // Spot: intensity scales by (axis . direction of travel) * cone_scale + cone_offset, clamped to [0, 1]. Other points:
+  // 0 and 1.
+  float cone_scale, cone_offset;
+  float radius;        // of the ball that the light is, for shadows; directional: tangent of its angular radius
+  int32_t is_point;    // point or spot
+  int32_t has_shadow;  // for shadows: 0 = nothing occludes it
 };
 struct LightingParameters {
   float eye[3];
@@ -88,6 +94,24 @@ struct LightingParameters {
   int32_t has_specular;  // 0: specular rows are not written
   int32_t light_count;
   KernelLight lights[kMaxKernelLights];
+};
+
+// Triangles in a bounding volume hierarchy, for rays. The left child of an inner node follows it, the right one is at
+// `first`. A path from the root has at most kMaxRayDepth nodes.
+constexpr int kMaxRayDepth = 128;
+struct RayTriangle {
+  float corner[3], edge1[3], edge2[3];  // counter-clockwise from its front
+};
+struct RayNode {
+  float low[3], high[3];
+  uint32_t first;
+  uint16_t count;  // leaf: how many triangles from `first`; 0: inner node
+  uint16_t axis;   // inner: the left child is the lower one along it
+};
+struct RayTree {
+  const RayNode* nodes;  // null: nothing to hit
+  const RayTriangle* triangles;
+  float back_limit;  // backs of triangles nearer than this do not occlude: see occluded()
 };
 
 // One table of operations. See tile_scalar.cpp for the definition of each on the last bit.
@@ -107,9 +131,17 @@ struct TileKernels {
 
   // Blinn-Phong lighting of n lanes (rounded up to 8): color rows[0..2] (255 = full) become
   // emission + color/255 * (ambient + sum diffuse N.L); specular rows get sum specular (N.H)^shininess.
-  // normal: 3 rows, any length (zero or not finite: towards the eye); position: 3 rows.
-  void (*light)(const LightingParameters& parameters, int n, const float* normal, const float* position, float* color,
-                float* specular);
+  // normal: 3 rows, any length (zero or not finite: towards the eye); position: 3 rows. visibility: null, or a row of
+  // factors for `ambient` and then one for each light.
+  void (*light)(const LightingParameters& parameters, int n, const float* normal, const float* position,
+                const float* visibility, float* color, float* specular);
+
+  // Which of eight rays hit a triangle at a distance in (0, limit): bits of `mask`. origin, direction: 3 rows,
+  // direction of unit length; limit: one row. The front of a triangle always counts, its back only from
+  // tree.back_limit on: a ray that starts on a facet which turns away from the light, while the interpolated normal
+  // does not yet, leaves the solid close by through its back, and must not be shadowed by that.
+  uint32_t (*occluded)(const RayTree& tree, const float* origin, const float* direction, const float* limit,
+                       uint32_t mask);
 
   // Filtered texels of n lanes (rounded up to 8), u and v finite: rows of red, green and blue in [0, 255].
   void (*sample_texture)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,

@@ -159,11 +159,14 @@ float power(float base, int exponent) {
   return result;
 }
 
-void light_lane(const LightingParameters& m, Vector normal, Vector at, float* color[3], float* specular[3]) {
+// visibility: of the ambient light, then of light i at (i + 1) * kBatchLanes; or null.
+void light_lane(const LightingParameters& m, Vector normal, Vector at, const float* visibility, float* color[3],
+                float* specular[3]) {
   const Vector to_eye{m.eye[0] - at.x, m.eye[1] - at.y, m.eye[2] - at.z};
   const Vector v = normalized(to_eye, {0, 0, 1});
   const Vector n = normalized(normal, v);
-  float diffuse_sum[3] = {m.ambient[0], m.ambient[1], m.ambient[2]}, specular_sum[3] = {0, 0, 0};
+  const float sky = visibility != nullptr ? visibility[0] : 1.0f;
+  float diffuse_sum[3] = {m.ambient[0] * sky, m.ambient[1] * sky, m.ambient[2] * sky}, specular_sum[3] = {0, 0, 0};
   for (int i = 0; i < m.light_count; ++i) {
     const KernelLight& light = m.lights[i];
     Vector l{light.vector[0], light.vector[1], light.vector[2]};
@@ -173,7 +176,10 @@ void light_lane(const LightingParameters& m, Vector normal, Vector at, float* co
       l = normalized(to_light, n);
       const float squared = std::min(dot(to_light, to_light), 0x1p120f);
       intensity = 1.0f / (1.0f + squared * (light.inverse_range * light.inverse_range));
+      const float along = 0.0f - dot({light.axis[0], light.axis[1], light.axis[2]}, l);
+      intensity = intensity * std::min(std::max(along * light.cone_scale + light.cone_offset, 0.0f), 1.0f);
     }
+    if (visibility != nullptr) intensity = intensity * visibility[(i + 1) * kBatchLanes];
     const float n_dot_l = std::max(dot(n, l), 0.0f);
     const float diffuse = n_dot_l * intensity;
     for (int c = 0; c < 3; ++c) diffuse_sum[c] = diffuse_sum[c] + light.diffuse[c] * diffuse;
@@ -189,14 +195,94 @@ void light_lane(const LightingParameters& m, Vector normal, Vector at, float* co
   }
 }
 
-void light(const LightingParameters& parameters, int n, const float* normal, const float* position, float* color,
-           float* specular) {
+void light(const LightingParameters& parameters, int n, const float* normal, const float* position,
+           const float* visibility, float* color, float* specular) {
   for (int k = 0; k < (n + 7) / 8 * 8; ++k) {
     float* colors[3] = {color + k, color + kBatchLanes + k, color + 2 * kBatchLanes + k};
     float* speculars[3] = {specular + k, specular + kBatchLanes + k, specular + 2 * kBatchLanes + k};
     light_lane(parameters, {normal[k], normal[kBatchLanes + k], normal[2 * kBatchLanes + k]},
-               {position[k], position[kBatchLanes + k], position[2 * kBatchLanes + k]}, colors, speculars);
+               {position[k], position[kBatchLanes + k], position[2 * kBatchLanes + k]},
+               visibility != nullptr ? visibility + k : nullptr, colors, speculars);
   }
+}
+
+Vector cross(Vector a, Vector b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Vector difference(Vector a, const float* b) {
+  return {a.x - b[0], a.y - b[1], a.z - b[2]};
+}
+
+struct Ray {
+  Vector origin, direction, inverse;
+  float limit;
+};
+
+// 1 / d, with a huge number instead of infinity, so that 0 * infinity cannot occur in the slab test.
+float safe_inverse(float d) {
+  constexpr float kTiny = 1e-12f;
+  return 1.0f / (d < 0.0f ? std::min(d, -kTiny) : std::max(d, kTiny));
+}
+
+bool enters(const RayNode& node, const Ray& ray) {
+  const Vector low{node.low[0] - ray.origin.x, node.low[1] - ray.origin.y, node.low[2] - ray.origin.z};
+  const Vector high{node.high[0] - ray.origin.x, node.high[1] - ray.origin.y, node.high[2] - ray.origin.z};
+  const float x0 = low.x * ray.inverse.x, x1 = high.x * ray.inverse.x;
+  const float y0 = low.y * ray.inverse.y, y1 = high.y * ray.inverse.y;
+  const float z0 = low.z * ray.inverse.z, z1 = high.z * ray.inverse.z;
+  const float in = std::max(std::max(std::min(x0, x1), std::min(y0, y1)), std::max(std::min(z0, z1), 0.0f));
+  const float out = std::min(std::min(std::max(x0, x1), std::max(y0, y1)), std::min(std::max(z0, z1), ray.limit));
+  return in <= out;
+}
+
+// Moeller and Trumbore's test. Neighbours overlap by a little: no ray slips between them.
+bool hits(const RayTriangle& t, const Ray& ray, float back_limit) {
+  constexpr float kSlack = 1e-6f;
+  const Vector edge1{t.edge1[0], t.edge1[1], t.edge1[2]}, edge2{t.edge2[0], t.edge2[1], t.edge2[2]};
+  const Vector p = cross(ray.direction, edge2);
+  const float determinant = dot(edge1, p);
+  const float scale = 1.0f / determinant;  // infinity for a parallel ray: then some comparison below is false
+  const Vector s = difference(ray.origin, t.corner);
+  const float u = dot(s, p) * scale;
+  const Vector q = cross(s, edge1);
+  const float v = dot(ray.direction, q) * scale;
+  const float distance = dot(edge2, q) * scale;
+  const bool inside = u >= -kSlack && v >= -kSlack && u + v <= 1.0f + kSlack;
+  const float nearest = determinant < 0.0f ? back_limit : 0.0f;
+  return inside && distance > nearest && distance < ray.limit;
+}
+
+bool is_occluded(const RayTree& tree, const Ray& ray) {
+  uint32_t stack[kMaxRayDepth + 1];
+  int depth = 0;
+  for (uint32_t at = 0;;) {
+    const RayNode& node = tree.nodes[at];
+    if (enters(node, ray)) {
+      if (node.count == 0) {
+        stack[depth++] = node.first;
+        ++at;
+        continue;
+      }
+      for (uint32_t i = node.first; i < node.first + node.count; ++i)
+        if (hits(tree.triangles[i], ray, tree.back_limit)) return true;
+    }
+    if (depth == 0) return false;
+    at = stack[--depth];
+  }
+}
+
+uint32_t occluded(const RayTree& tree, const float* origin, const float* direction, const float* limit, uint32_t mask) {
+  uint32_t found = 0;
+  for (uint32_t k = 0; k < 8 && tree.nodes != nullptr; ++k) {
+    if ((mask >> k & 1) == 0) continue;
+    const Vector d{direction[k], direction[kBatchLanes + k], direction[2 * kBatchLanes + k]};
+    const Ray ray{{origin[k], origin[kBatchLanes + k], origin[2 * kBatchLanes + k]},
+                  d,
+                  {safe_inverse(d.x), safe_inverse(d.y), safe_inverse(d.z)},
+                  limit[k]};
+    found |= is_occluded(tree, ray) ? 1u << k : 0u;
+  }
+  return found;
 }
 
 // The two texels that one axis mixes, and the weight of the second in 1/256.
@@ -304,6 +390,7 @@ void fill_tile_scalar(TileKernels& table) {
   table.collect_packs = collect_packs;
   table.interpolate = interpolate;
   table.light = light;
+  table.occluded = occluded;
   table.sample_texture = sample_texture;
   table.accumulate = accumulate;
   table.resolve_row = resolve_row;

@@ -51,7 +51,8 @@ void declare(Options& options, Request& request) {
                           "where lights are lit: polygon, vertex or sample");
   options.choice<sim::Lighting>("--lighting", request.lighting,
                                 {{"full", sim::Lighting::full}, {"local", sim::Lighting::local}},
-                                "local: without what a baked solution adds");
+                                "full: shadows, ambient occlusion or the baked solution; local: without "
+                                "(the baked solution)");
   options.choice<int>("--samples", request.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "a pixel (16; quality low: the split's)");
   options.choice<sim::Model>("--tessellation", request.tessellation,
@@ -72,7 +73,12 @@ Result<sim::Split> quality_of(const Options& options, const Request& request, co
   if (options.given("--shading")) quality.shading = request.shading;
   if (options.given("--samples")) quality.samples = request.samples;
   if (options.given("--tessellation")) split.low_model = request.tessellation;
-  if (options.given("--lighting")) split.low_lighting = request.lighting;
+  if (options.given("--lighting")) {
+    const bool full = request.lighting == sim::Lighting::full;
+    quality.lighting = full ? raster::Lighting::full : raster::Lighting::local;
+    if (full && !options.given("--shading") && sim::has_lit_materials(set)) quality.shading = Shading::phong;
+    split.low_lighting = full || set.local_colors.empty() ? sim::Lighting::full : sim::Lighting::local;
+  }
   split.low = quality;
   return split;
 }
@@ -80,7 +86,6 @@ Result<sim::Split> quality_of(const Options& options, const Request& request, co
 // What the scene cannot do, or empty.
 std::string scene_problem(const sim::Split& split, const sim::SceneSet& set) {
   if (split.low_model == sim::Model::coarse && set.coarse.mesh.faces.empty()) return "has no coarse model";
-  if (split.low_lighting == sim::Lighting::local && set.local_colors.empty()) return "has no lighting baked in";
   return "";
 }
 
