@@ -14,6 +14,7 @@ struct Candidate {
   const Vertex* first;
   FaceNormal normal;
   uint32_t id;
+  const float* previous[3];  // clip coordinates in the previous frame, if wanted
 };
 
 // The face is inside the index list and its indices and material inside theirs.
@@ -68,12 +69,18 @@ void attach_attributes(const FrameInput& input, const Candidate& candidate, cons
     triangle.attributes[r] = record;
     triangle.state[r] = surface.batch;
   }
+  if (input.previous_clip == nullptr) return;
+  CornerAttributes previous;
+  for (int i = 0; i < 3; ++i) std::copy_n(candidate.previous[i], 4, previous.value[i]);
+  float* record = arena.allocate(3 * 4);
+  write_record(previous, weights, 4, record);
+  triangle.attributes[2] = record;
 }
 
 }  // namespace
 
 void DrawList::transform(const FrameInput& input, ThreadPool& pool) {
-  const std::vector<Vertex>& source = input.scene->mesh.vertices;
+  const std::vector<Vertex>& source = input.mesh->vertices;
   if (vertices_.size() < source.size()) vertices_.resize(source.size());
   constexpr size_t kRange = 4096;
   const size_t ranges = (source.size() + kRange - 1) / kRange;
@@ -90,7 +97,7 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
   transform(input, pool);
 
   // Chunks only divide the work: triangles keep the order of the scene whatever their number.
-  const size_t n_faces = input.scene->mesh.faces.size();
+  const size_t n_faces = input.mesh->faces.size();
   const auto n_threads = static_cast<size_t>(pool.thread_count());
   n_chunks_ = n_threads == 1 ? 1 : std::min<size_t>(4 * n_threads, n_faces / 256 + 1);
   if (chunks_.size() < n_chunks_) chunks_.resize(n_chunks_);
@@ -122,7 +129,7 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
 }
 
 void DrawList::process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk) {
-  const Mesh& mesh = input.scene->mesh;
+  const Mesh& mesh = *input.mesh;
   chunk.result = check_face(mesh, face_number, input.scene->materials.size());
   if (!chunk.result.ok()) return;
   const Face& face = mesh.faces[face_number];
@@ -165,13 +172,16 @@ void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, c
       screen[i] = corners[i]->screen;
     }
   }
-  const Mesh& mesh = input.scene->mesh;
+  const Mesh& mesh = *input.mesh;
   const Face& face = mesh.faces[face_number];
   Candidate candidate{{nullptr, nullptr},
                       {&mesh.vertices[vertices[0]], &mesh.vertices[vertices[1]], &mesh.vertices[vertices[2]]},
                       &mesh.vertices[mesh.indices[face.first]],
                       {0, 0, 0},
-                      face_number + 1};
+                      face_number + 1,
+                      {nullptr, nullptr, nullptr}};
+  if (input.previous_clip != nullptr)
+    for (int i = 0; i < 3; ++i) candidate.previous[i] = input.previous_clip + 4 * size_t{vertices[i]};
   bool needs_normal = false;
   for (int r = 0; r < 2; ++r) {
     if (input.surfaces[r] == nullptr) continue;
@@ -195,7 +205,7 @@ void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, c
     RasterTriangle* const stored = chunk.triangles.allocate(1);
     *stored = triangle;
     stored->id = candidate.id;
-    stored->attributes[0] = stored->attributes[1] = nullptr;
+    stored->attributes[0] = stored->attributes[1] = stored->attributes[2] = nullptr;
     stored->state[0] = stored->state[1] = 0;
     const ClipVertex* const clip_corners[3] = {&polygon[0], &polygon[i], &polygon[i + 1]};
     attach_attributes(input, candidate, clip_corners, front, chunk.attributes, *stored);

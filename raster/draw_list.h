@@ -41,11 +41,13 @@ class Arena {
 // What the front end reads. `surfaces[1]` is null unless two renderings are drawn at once.
 struct FrameInput {
   const Scene* scene;
+  const Mesh* mesh;  // the scene's, posed
   const Camera* camera;
   const Kernels* kernels;
   Viewport viewport;
   SampleHull hull;
   const std::vector<Surface>* surfaces[2];
+  const float* previous_clip;  // four a vertex, or null where nobody asks where things were
 };
 
 // The triangles of a frame in scene order, by tile. Rebuilt each frame; keeps its memory.

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "raster/draw_list.h"
 #include "raster/occluder_tree.h"
+#include "raster/pose.h"
 #include "raster/sample_pattern.h"
 #include "raster/surface.h"
 #include "raster/tile_painter.h"
@@ -24,11 +25,15 @@ struct Renderer::State {
   std::vector<Surface> surfaces[2];
   OccluderTree occluders;
   ShadowScene shadows[2];
+  Mesh posed;                                          // of scenes with objects
+  std::vector<float> previous_clip;                    // of the vertices
   std::vector<std::unique_ptr<TilePainter>> painters;  // one a thread
 
-  const ShadowScene* prepare_shadows(const Scene& scene, const RenderQuality& quality, ShadowScene& out);
+  Result<const Mesh*> pose(const Scene& scene);
+  const ShadowScene* prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
+                                     ShadowScene& out);
   Result<RenderStats> draw(const Scene& scene, const Camera& camera, const RenderQuality* const qualities[2],
-                           PaintInput& input);
+                           const Camera* previous_camera, PaintInput& input);
 };
 
 namespace {
@@ -80,16 +85,24 @@ Result<Renderer> Renderer::create(int width, int height, const RendererOptions& 
   if (width > max_side || height > max_side) return Failure{Error::limit_exceeded, 0, "image side over the limit"};
   const Kernels* kernels = kernels_for(options.isa);
   if (kernels == nullptr) return Failure{Error::bad_argument, 0, "instruction set not available"};
-  std::unique_ptr<State> state(new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}});
+  std::unique_ptr<State> state(
+      new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}, {}, {}});
   for (int i = 0; i < state->pool.thread_count(); ++i) state->painters.push_back(std::make_unique<TilePainter>());
   return Renderer(std::move(state));
 }
 
+// The scene's own mesh, or a posed copy.
+Result<const Mesh*> Renderer::State::pose(const Scene& scene) {
+  if (scene.objects.empty()) return &scene.mesh;
+  PAC_CHECK(pose_mesh(scene, posed));
+  return &posed;
+}
+
 // Null where the quality casts no shadows.
-const ShadowScene* Renderer::State::prepare_shadows(const Scene& scene, const RenderQuality& quality,
+const ShadowScene* Renderer::State::prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
                                                     ShadowScene& out) {
   if (quality.lighting != Lighting::full) return nullptr;
-  occluders.update(scene.mesh);
+  occluders.update(mesh);
   out.tree = occluders.view();
   out.offset = 2e-4f * occluders.diagonal();
   const float reach = scene.ambient_reach;
@@ -100,18 +113,27 @@ const ShadowScene* Renderer::State::prepare_shadows(const Scene& scene, const Re
 }
 
 Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& camera,
-                                          const RenderQuality* const qualities[2], PaintInput& input) {
+                                          const RenderQuality* const qualities[2], const Camera* previous_camera,
+                                          PaintInput& input) {
   if (!is_usable(camera.clip_from_world))
     return Failure{Error::bad_argument, 0, "camera matrix is singular or not finite"};
+  if (!input.previous.empty() && (previous_camera == nullptr || !is_usable(previous_camera->clip_from_world)))
+    return Failure{Error::bad_argument, 0, "previous camera is missing, singular or not finite"};
   input.pattern = sample_pattern(qualities[0]->samples);
   if (input.pattern.empty()) return Failure{Error::bad_argument, 0, "samples must be 1, 4, 16 or 64"};
   if (width == 0 || height == 0) return RenderStats{};
+  PAC_TRY(const Mesh* const mesh, pose(scene));
   FrameInput frame{
-      &scene, &camera, kernels, make_viewport(width, height), sample_hull(input.pattern), {nullptr, nullptr}};
+      &scene, mesh, &camera, kernels, make_viewport(width, height), sample_hull(input.pattern), {nullptr, nullptr},
+      nullptr};
+  if (!input.previous.empty()) {
+    previous_clip_positions(scene, *previous_camera, pool, previous_clip);
+    frame.previous_clip = previous_clip.data();
+  }
   for (int r = 0; r < 2; ++r) {
     input.surfaces[r] = nullptr;
     if (qualities[r] == nullptr) continue;
-    const ShadowScene* cast = prepare_shadows(scene, *qualities[r], shadows[r]);
+    const ShadowScene* cast = prepare_shadows(scene, *mesh, *qualities[r], shadows[r]);
     PAC_CHECK(prepare_surfaces(scene, camera, *qualities[r], cast, surfaces[r]));
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
   }
@@ -135,14 +157,16 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
 Result<RenderStats> Renderer::render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
                                      const RenderTargets& targets) {
   const int w = state_->width, h = state_->height;
-  if (!fits(targets.color, w, h) || !fits(targets.depth, w, h) || !fits(targets.id, w, h))
+  if (!fits(targets.color, w, h) || !fits(targets.depth, w, h) || !fits(targets.id, w, h) ||
+      !fits(targets.previous, w, h))
     return Failure{Error::bad_argument, 0, "target size is not the renderer's"};
   PaintInput input{};
   input.color[0] = targets.color;
   input.depth = targets.depth;
   input.id = targets.id;
+  input.previous = targets.previous;
   const RenderQuality* const qualities[2] = {&quality, nullptr};
-  return state_->draw(scene, camera, qualities, input);
+  return state_->draw(scene, camera, qualities, targets.previous_camera, input);
 }
 
 Result<RenderStats> Renderer::render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,
@@ -150,7 +174,7 @@ Result<RenderStats> Renderer::render_pair(const Scene& scene, const Camera& came
                                           RgbView low_color, RgbView difference) {
   const int w = state_->width, h = state_->height;
   if (!fits(high_targets.color, w, h) || !fits(high_targets.depth, w, h) || !fits(high_targets.id, w, h) ||
-      !fits(low_color, w, h) || !fits(difference, w, h))
+      !fits(high_targets.previous, w, h) || !fits(low_color, w, h) || !fits(difference, w, h))
     return Failure{Error::bad_argument, 0, "target size is not the renderer's"};
   if (high.samples != low.samples || high.cull_back_faces != low.cull_back_faces)
     return Failure{Error::bad_argument, 0, "a pair shares samples and culling"};
@@ -159,9 +183,10 @@ Result<RenderStats> Renderer::render_pair(const Scene& scene, const Camera& came
   input.color[1] = low_color;
   input.depth = high_targets.depth;
   input.id = high_targets.id;
+  input.previous = high_targets.previous;
   input.difference = difference;
   const RenderQuality* const qualities[2] = {&high, &low};
-  return state_->draw(scene, camera, qualities, input);
+  return state_->draw(scene, camera, qualities, high_targets.previous_camera, input);
 }
 
 }  // namespace pac::raster

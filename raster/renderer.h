@@ -26,11 +26,11 @@ enum class Lighting : uint8_t {
 // What one rendering does. The two renderings of a split differ only in this and, for tessellation, in the Scene.
 struct RenderQuality {
   Shading shading = Shading::gouraud;
-  bool texture = true;  // false: every texture is replaced by its mean color
-  int samples = 1;      // 1, 4, 16 or 64 a pixel, box-filtered
+  bool texture = true;           // false: every texture is replaced by its mean color
+  int samples = 1;               // 1, 4, 16 or 64 a pixel, box-filtered
+  bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
   Lighting lighting = Lighting::local;
   int light_samples = 16;  // full lighting: rays a pixel to each light with a size, and of ambient occlusion: 1..64
-  bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
 
   bool operator==(const RenderQuality&) const = default;
 };
@@ -40,7 +40,14 @@ struct RenderTargets {
   RgbView color;
   PlaneView<float> depth;  // window z in [0, 1] at the first sample; 1 = background
   PlaneView<uint32_t> id;  // 1 + face number at the first sample; 0 = background
+  // Where what the pixel shows was in the previous frame, under `previous_camera` and the objects' previous transforms:
+  // x and y in pixels (a surface that has not moved: the pixel's center, column + 0.5 and row + 0.5), rounded to 1/256
+  // and not limited to the image, then window z. x = y = kNoPrevious where there is no surface or it was behind the
+  // camera.
+  ImageView<float, 3> previous{};
+  const Camera* previous_camera = nullptr;  // required for `previous`
 };
+constexpr float kNoPrevious = -65536.0f;
 
 struct RenderStats {
   uint64_t triangles_submitted = 0;  // after polygons are cut, before clipping
@@ -64,8 +71,8 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  // Draws. Fails with corrupt (mesh or material indices out of range: nothing is drawn) or bad_argument (samples, view
-  // sizes, a camera that is not finite).
+  // Draws. Fails with corrupt (mesh, object or material indices out of range: nothing is drawn) or bad_argument
+  // (samples, view sizes, a camera that is singular or not finite).
   Result<RenderStats> render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
                              const RenderTargets& targets);
 

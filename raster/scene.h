@@ -73,9 +73,18 @@ struct Light {
   bool casts_shadows = true;
 };
 
+// Vertices that move together: an affine transform (last row 0 0 0 1) from the mesh's coordinates to the world's, in
+// this frame and in the previous one. Vertices of no object stand still.
+struct Object {
+  uint32_t first_vertex = 0, vertex_count = 0;
+  glm::mat4 world_from_object{1.0f};
+  glm::mat4 previous_world_from_object{1.0f};
+};
+
 struct Scene {
   std::string name;
   Mesh mesh;
+  std::vector<Object> objects;
   std::vector<Material> materials;  // at least one if the mesh has faces
   std::vector<Texture> textures;
   std::vector<Light> lights;

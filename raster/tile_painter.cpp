@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace pac::raster {
 
@@ -22,6 +23,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
     if (triangles_.empty() && s > 0) break;
     rasterize(input, origin);
     if (s == 0) write_depth_and_id(input, area);
+    if (s == 0 && !input.previous.empty()) write_previous(input, area, origin);
     for (int r = 0; r < n_renderings; ++r) {
       n_packs_ = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
       shade(input, {r, s, origin});
@@ -100,6 +102,44 @@ void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) 
     for (int x = 0; x < area.width; ++x) {
       const uint32_t id = ids_[y * kTileSize + x];
       out[x] = id == 0 ? 0 : triangles_[id - 1]->id;
+    }
+  }
+}
+
+// Interpolates the previous frame's clip coordinates: they are affine on the triangle, so perspective-correct
+// interpolation and one division give the exact place.
+void TilePainter::write_previous(const PaintInput& input, const Area& area, SamplePosition origin) {
+  for (int y = 0; y < area.height; ++y) {
+    float* out = input.previous.pixel(area.x, area.y + y);
+    for (int x = 0; x < area.width; ++x, out += 3) {
+      out[0] = out[1] = kNoPrevious;
+      out[2] = 1.0f;
+    }
+  }
+  const int n = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+  const auto half_width = 0.5f * static_cast<float>(input.width), half_height = 0.5f * static_cast<float>(input.height);
+  const float offset_x = static_cast<float>(128 - (origin.x & 255)),
+              offset_y = static_cast<float>(128 - (origin.y & 255));
+  const auto rounded = [](float pixels, float offset) {  // from the sample to the pixel's center
+    constexpr float kLimit = 0x1p20f;
+    const float fixed = std::floor(std::min(std::max(pixels, -kLimit), kLimit) * 256.0f + (offset + 0.5f));
+    return fixed * (1.0f / 256.0f);
+  };
+  for (int first = 0; first < n; first += kBatchPacks) {
+    const int count = std::min(kBatchPacks, n - first);
+    const InterpolateTarget target{2, 4, rows_, nullptr, 0, 0, 0, 0};
+    input.kernels->tile.interpolate(packs_ + first, count, origin, target);
+    for (int lane = 0; lane < 8 * count; ++lane) {
+      const LanePack& pack = packs_[first + lane / 8];
+      if ((pack.mask >> (lane & 7) & 1) == 0 || pack.x + (lane & 7) >= area.width) continue;
+      const float* clip = rows_ + lane;
+      const float w = clip[3 * kBatchLanes], z = clip[2 * kBatchLanes];
+      if (!(w >= 0x1p-60f && z >= -w)) continue;
+      const float inverse_w = 1.0f / w;
+      float* out = input.previous.pixel(area.x + pack.x + (lane & 7), area.y + pack.y);
+      out[0] = rounded((clip[0] * inverse_w) * half_width + half_width, offset_x);
+      out[1] = rounded(half_height - (clip[kBatchLanes] * inverse_w) * half_height, offset_y);
+      out[2] = (z * inverse_w) * 0.5f + 0.5f;
     }
   }
 }

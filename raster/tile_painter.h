@@ -23,6 +23,7 @@ struct PaintInput {
   RgbView difference;  // only with two renderings
   PlaneView<float> depth;
   PlaneView<uint32_t> id;
+  ImageView<float, 3> previous;
 };
 
 // The working memory of one thread.
@@ -49,6 +50,7 @@ class TilePainter {
   const float* cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs,
                                int n);
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
+  void write_previous(const PaintInput& input, const Area& area, SamplePosition origin);
   void write_color(const PaintInput& input, const Area& area) const;
 
   alignas(64) float depth_[kTilePixels];

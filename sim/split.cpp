@@ -97,8 +97,10 @@ raster::Scene copy_of(const raster::Scene& scene, bool textured) {
   copy.mesh = scene.mesh;
   copy.materials = scene.materials;
   for (const raster::Texture& texture : scene.textures) copy.textures.push_back(mean_color_of(texture));
+  copy.objects = scene.objects;
   copy.lights = scene.lights;
   copy.ambient_light = scene.ambient_light;
+  copy.ambient_reach = scene.ambient_reach;
   copy.background = scene.background;
   return copy;
 }

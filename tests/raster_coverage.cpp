@@ -168,6 +168,7 @@ TEST_CASE("clipping at the near plane and the guard band opens no cracks and cov
     std::vector<Surface> surfaces;
     REQUIRE(prepare_surfaces(scene, camera, {}, nullptr, surfaces).ok());
     const FrameInput input{&scene,
+                           &scene.mesh,
                            &camera,
                            kernels_for(Isa::scalar),
                            make_viewport(kSide, kSide),

@@ -34,7 +34,8 @@ struct RasterTriangle {
   uint8_t exclude[3];                  // 1 where a sample on edge i is outside (not a top or left edge)
   uint32_t id;                         // 1 + face number
   uint32_t state[2];                   // per rendering: how it is shaded
-  const float* attributes[2];          // per rendering: a0, a1 - a0, a2 - a0 for each attribute
+  // Per rendering: a0, a1 - a0, a2 - a0 for each attribute. [2]: clip coordinates in the previous frame.
+  const float* attributes[3];
 };
 
 // The sample of the tile's pixel (0, 0): 256 * tile origin + sample offset.
@@ -51,7 +52,7 @@ struct LanePack {
 
 // Rows that interpolate() writes. LOD needs the texture's size; null `lod` where there is no texture.
 struct InterpolateTarget {
-  int rendering;     // 0 or 1: which RasterTriangle::attributes
+  int rendering;     // 0, 1 or 2: which RasterTriangle::attributes
   int n_attributes;  // attribute j goes to rows + j * kBatchLanes
   float* rows;
   float* lod;           // log2 of the larger of the lengths in level-0 texels of d(uv)/dx and d(uv)/dy, plus lod_bias
