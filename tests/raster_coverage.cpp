@@ -173,7 +173,8 @@ TEST_CASE("clipping at the near plane and the guard band opens no cracks and cov
                            kernels_for(Isa::scalar),
                            make_viewport(kSide, kSide),
                            sample_hull(pattern),
-                           {&surfaces, nullptr}};
+                           {&surfaces, nullptr},
+                           nullptr};
     REQUIRE(list.build(input, pool).ok());
     HitCounter hits(kSide, pattern);
     for (int tile = 0; tile < list.tiles_x() * list.tiles_y(); ++tile) {
