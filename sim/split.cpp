@@ -75,8 +75,7 @@ void apply(Part part, const SceneSet& scene, Split& split) {
       split.low.texture = false;
       break;
     default:
-      split.high.lighting = raster::Lighting::full;
-      split.low.lighting = raster::Lighting::local;
+      if (has_lit_materials(scene)) split.high.lighting = raster::Lighting::full;
       if (has_baked_lighting(scene)) split.low_lighting = Lighting::local;
   }
 }
