@@ -65,6 +65,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, collect_packs),
     PAC_KERNEL(tile, interpolate),
     PAC_KERNEL(tile, light),
+    PAC_KERNEL(tile, occluded),
     PAC_KERNEL(tile, sample_texture),
     PAC_KERNEL(tile, accumulate),
     PAC_KERNEL(tile, resolve_row),
