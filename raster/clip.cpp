@@ -14,19 +14,15 @@ uint32_t outcode(const TransformedVertex& v, const Viewport& viewport) {
   const auto finite = [](float f) { return std::fabs(f) <= kLargest; };  // false for NaN
   if (!finite(v.x) || !finite(v.y) || !finite(v.z) || !finite(v.w)) return kNotFinite;
   const float gx = viewport.guard_x * v.w, gy = viewport.guard_y * v.w;
-  uint32_t code = 0;
-  if (v.z < -v.w) code |= kOutNear;
-  if (v.z > kFarGuard * v.w) code |= kOutFarGuard;
-  if (v.x > gx) code |= kOutGuardRight;
-  if (v.x < -gx) code |= kOutGuardLeft;
-  if (v.y > gy) code |= kOutGuardTop;
-  if (v.y < -gy) code |= kOutGuardBottom;
-  if (v.x > v.w) code |= kOutRight;
-  if (v.x < -v.w) code |= kOutLeft;
-  if (v.y > v.w) code |= kOutTop;
-  if (v.y < -v.w) code |= kOutBottom;
-  if (v.z > v.w) code |= kOutFar;
-  return code;
+  // Without branches: which sides a vertex is on has no pattern.
+  const auto bit = [](bool outside, uint32_t plane) { return outside ? plane : 0u; };
+  const uint32_t near_far =
+      bit(v.z < -v.w, kOutNear) | bit(v.z > kFarGuard * v.w, kOutFarGuard) | bit(v.z > v.w, kOutFar);
+  const uint32_t guard = bit(v.x > gx, kOutGuardRight) | bit(v.x < -gx, kOutGuardLeft) | bit(v.y > gy, kOutGuardTop) |
+                         bit(v.y < -gy, kOutGuardBottom);
+  const uint32_t view =
+      bit(v.x > v.w, kOutRight) | bit(v.x < -v.w, kOutLeft) | bit(v.y > v.w, kOutTop) | bit(v.y < -v.w, kOutBottom);
+  return near_far | guard | view;
 }
 
 // >= 0 inside.

@@ -12,13 +12,33 @@ struct CornerAttributes {
   float value[3][kMaxAttributes];
 };
 
-// `normal` is the face's (any length), `vertices` the triangle's corners, `first` the face's first corner. `front`: the
+struct CornerNormal {
+  float x, y, z;
+};
+
+// The vertex's normal, made finite. False where it has no usable length.
+bool own_normal(const Vertex& vertex, CornerNormal& normal);
+
+// Unit length, or zero where there is none: then every normal of a vertex keeps its own side.
+FaceNormal unit_normal(const FaceNormal& normal);
+
+// Lights n <= kBatchLanes points of one surface: color and specular color.
+struct LitPoint {
+  CornerNormal normal;
+  const Vertex* vertex;
+};
+void light_points(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]);
+
+// `normal` is the face's unit normal, `vertices` the triangle's corners, `first` the face's first corner. `front`: the
 // front is seen; normals on the far side of the face are turned toward the viewer, so that lighting is two-sided.
+// cached[i]: what light_points() gives corner i by its own normal, or null.
 void corner_attributes(const Surface& surface, const TileKernels& kernels, const FaceNormal& normal,
-                       const Vertex* const vertices[3], const Vertex& first, bool front, CornerAttributes& out);
+                       const Vertex* const vertices[3], const float* const cached[3], const Vertex& first, bool front,
+                       CornerAttributes& out);
 
 // The record that the kernels read, for a triangle whose corner i is the mean of the given corners with weights[i]:
-// a0, a1 - a0, a2 - a0 for each attribute.
+// a0, a1 - a0, a2 - a0 for each attribute. write_whole_record: corner i is the given corner order[i].
+void write_whole_record(const CornerAttributes& corners, const int order[3], int n_attributes, float* record);
 void write_record(const CornerAttributes& corners, const float* const weights[3], int n_attributes, float* record);
 
 }  // namespace pac::raster

@@ -7,16 +7,6 @@
 namespace pac::raster {
 namespace {
 
-// A triangle that survived the trivial rejections, with what its face contributes.
-struct Candidate {
-  const Surface* surfaces[2];
-  const Vertex* vertices[3];
-  const Vertex* first;
-  FaceNormal normal;
-  uint32_t id;
-  const float* previous[3];  // clip coordinates in the previous frame, if wanted
-};
-
 // The face is inside the index list and its indices and material inside theirs.
 Result<void> check_face(const Mesh& mesh, uint32_t number, size_t n_materials) {
   const Face& face = mesh.faces[number];
@@ -28,6 +18,18 @@ Result<void> check_face(const Mesh& mesh, uint32_t number, size_t n_materials) {
     if (mesh.indices[face.first + i] >= mesh.vertices.size())
       return Failure{Error::corrupt, number, "face names a vertex that does not exist"};
   return {};
+}
+
+// Whether check_face() finds nothing; without the cost of a Result a face.
+bool is_valid(const Mesh& mesh, const Face& face, size_t n_materials) {
+  if (face.count < 3 || face.material >= n_materials || face.first > mesh.indices.size() ||
+      face.count > mesh.indices.size() - face.first)
+    return false;
+  const uint32_t* const indices = mesh.indices.data() + face.first;
+  const size_t n_vertices = mesh.vertices.size();
+  bool inside = true;
+  for (uint32_t i = 0; i < face.count; ++i) inside = inside && indices[i] < n_vertices;
+  return inside;
 }
 
 // Some sample of the tile may be inside: each edge function is >= 0 at the tile's most favorable sample position.
@@ -54,27 +56,39 @@ void for_each_tile(const RasterTriangle& t, int tiles_x, const SampleHull& hull,
       if (!test || may_touch(t, x, y, hull)) visit(y * tiles_x + x);
 }
 
-// Stores one rendering's attributes with the triangle. `front` exchanges corners 1 and 2, as setup_triangle did.
-void attach_attributes(const FrameInput& input, const Candidate& candidate, const ClipVertex* const corners[3],
+// Stores the renderings' attributes with the triangle. `front` exchanges corners 1 and 2, as setup_triangle did.
+// corners: null for a triangle that was not clipped.
+void attach_attributes(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners,
                        bool front, Arena<float>& arena, RasterTriangle& triangle) {
-  const float* weights[3] = {corners[0]->weight, corners[front ? 2 : 1]->weight, corners[front ? 1 : 2]->weight};
+  const int order[3] = {0, front ? 2 : 1, front ? 1 : 2};
+  const auto write = [&](const CornerAttributes& attributes, int count) {
+    float* record = arena.allocate(3 * static_cast<size_t>(count));
+    if (corners == nullptr) {
+      write_whole_record(attributes, order, count, record);
+    } else {
+      const float* const weights[3] = {corners[order[0]]->weight, corners[order[1]]->weight, corners[order[2]]->weight};
+      write_record(attributes, weights, count, record);
+    }
+    return record;
+  };
   for (int r = 0; r < 2; ++r) {
     if (candidate.surfaces[r] == nullptr) continue;
     const Surface& surface = *candidate.surfaces[r];
     CornerAttributes attributes;
-    corner_attributes(surface, input.kernels->tile, candidate.normal, candidate.vertices, *candidate.first, front,
-                      attributes);
-    float* record = arena.allocate(3 * static_cast<size_t>(surface.layout.count));
-    write_record(attributes, weights, surface.layout.count, record);
-    triangle.attributes[r] = record;
+    corner_attributes(surface, input.kernels->tile, candidate.normal, candidate.vertices, candidate.lit[r],
+                      *candidate.first, front, attributes);
+    triangle.attributes[r] = write(attributes, surface.layout.count);
     triangle.state[r] = surface.batch;
   }
   if (input.previous_clip == nullptr) return;
   CornerAttributes previous;
   for (int i = 0; i < 3; ++i) std::copy_n(candidate.previous[i], 4, previous.value[i]);
-  float* record = arena.allocate(3 * 4);
-  write_record(previous, weights, 4, record);
-  triangle.attributes[2] = record;
+  triangle.attributes[2] = write(previous, 4);
+}
+
+// Clockwise on the screen and not degenerate: setup_triangle() would say `back`, or that it is missed.
+bool is_back(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVertex& v2) {
+  return static_cast<int64_t>(v1.x - v0.x) * (v2.y - v0.y) > static_cast<int64_t>(v2.x - v0.x) * (v1.y - v0.y);
 }
 
 }  // namespace
@@ -95,6 +109,9 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
   tiles_x_ = (input.viewport.width + kTileSize - 1) / kTileSize;
   tiles_y_ = (input.viewport.height + kTileSize - 1) / kTileSize;
   transform(input, pool);
+  for (int r = 0; r < 2; ++r)
+    if (input.surfaces[r] != nullptr)
+      lit_[r].prepare(*input.mesh, *input.surfaces[r], input.kernels->tile, vertices_, pool);
 
   // Chunks only divide the work: triangles keep the order of the scene whatever their number.
   const size_t n_faces = input.mesh->faces.size();
@@ -121,6 +138,7 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
   chunk.attributes.reset();
   chunk.list.clear();
   chunk.pairs.clear();
+  chunk.normal_of = UINT32_MAX;
   chunk.stats = {};
   chunk.result = {};
   for (size_t i = first_face; i < last_face && chunk.result.ok(); ++i)
@@ -130,18 +148,69 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
 
 void DrawList::process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk) {
   const Mesh& mesh = *input.mesh;
-  chunk.result = check_face(mesh, face_number, input.scene->materials.size());
-  if (!chunk.result.ok()) return;
   const Face& face = mesh.faces[face_number];
+  if (!is_valid(mesh, face, input.scene->materials.size())) {
+    chunk.result = check_face(mesh, face_number, input.scene->materials.size());
+    return;
+  }
   const uint32_t* indices = mesh.indices.data() + face.first;
   if (face.count == 3) {
     process_triangle(input, face_number, indices, chunk);
+    return;
+  }
+  if (is_unseen(face, indices, (*input.surfaces[0])[face.material].drop_back_faces)) {
+    chunk.stats.triangles_submitted += face.count - 2;
     return;
   }
   for (const CornerTriple& triple : chunk.cutter.cut(mesh, face)) {
     const uint32_t vertices[3] = {indices[triple.corner[0]], indices[triple.corner[1]], indices[triple.corner[2]]};
     process_triangle(input, face_number, vertices, chunk);
   }
+}
+
+// No triangle of the polygon, however it is cut, will be drawn: all corners are beyond one side of the view, or it is
+// a quadrilateral whose corners, taken three at a time in any way, are clockwise on the screen.
+bool DrawList::is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const {
+  uint32_t any = 0, all = ~0u;
+  for (uint32_t k = 0; k < face.count; ++k) {
+    any |= vertices_[indices[k]].outcode;
+    all &= vertices_[indices[k]].outcode;
+  }
+  if ((any & kNotFinite) != 0) return false;
+  if ((all & kOutView) != 0) return true;
+  if (face.count != 4 || !drop_back_faces || (any & kOutClip) != 0) return false;
+  const auto corner = [&](int k) -> const ScreenVertex& { return vertices_[indices[k]].screen; };
+  return is_back(corner(0), corner(1), corner(2)) && is_back(corner(0), corner(2), corner(3)) &&
+         is_back(corner(0), corner(1), corner(3)) && is_back(corner(1), corner(2), corner(3));
+}
+
+void DrawList::fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
+                              Candidate& out) const {
+  const Mesh& mesh = *input.mesh;
+  const Face& face = mesh.faces[face_number];
+  out.first = &mesh.vertices[mesh.indices[face.first]];
+  out.id = face_number + 1;
+  out.normal = {0, 0, 0};
+  bool needs_normal = false;
+  for (int i = 0; i < 3; ++i) out.vertices[i] = &mesh.vertices[vertices[i]];
+  for (int r = 0; r < 2; ++r) {
+    out.surfaces[r] = nullptr;
+    if (input.surfaces[r] == nullptr) continue;
+    out.surfaces[r] = &(*input.surfaces[r])[face.material];
+    needs_normal = needs_normal || out.surfaces[r]->lit != Surface::Lit::no;
+    for (int i = 0; i < 3; ++i) out.lit[r][i] = lit_[r].find(vertices[i], face.material);
+  }
+  if (needs_normal) out.normal = unit_normal_of(mesh, face_number, chunk);
+  for (int i = 0; i < 3; ++i)
+    out.previous[i] = input.previous_clip != nullptr ? input.previous_clip + 4 * size_t{vertices[i]} : nullptr;
+}
+
+const FaceNormal& DrawList::unit_normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const {
+  if (chunk.normal_of != face_number) {
+    chunk.normal = unit_normal(face_normal(mesh, mesh.faces[face_number]));
+    chunk.normal_of = face_number;
+  }
+  return chunk.normal;
 }
 
 void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3],
@@ -156,59 +225,45 @@ void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, c
   }
   if ((all & kOutView) != 0) return;
 
+  const Mesh& mesh = *input.mesh;
+  const Face& face = mesh.faces[face_number];
+  const bool whole = (any & kOutClip) == 0;
+  const bool drop_back_faces = (*input.surfaces[0])[face.material].drop_back_faces;
+  if (whole && drop_back_faces && is_back(corners[0]->screen, corners[1]->screen, corners[2]->screen)) return;
+
   ClipVertex polygon[kMaxClipVertices];
   ScreenVertex screen[kMaxClipVertices];
   int n = 3;
-  if ((any & kOutClip) != 0) {
+  if (whole) {
+    for (int i = 0; i < 3; ++i) screen[i] = corners[i]->screen;
+  } else {
     n = clip_triangle(corners, any & kOutClip, input.viewport, polygon);
     for (int i = 0; i < n; ++i) {
       if (project_vertex(polygon[i], input.viewport, screen[i])) continue;
       ++chunk.stats.triangles_dropped;
       return;
     }
-  } else {
-    for (int i = 0; i < 3; ++i) {
-      polygon[i] = {0, 0, 0, 0, {i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f}};
-      screen[i] = corners[i]->screen;
-    }
   }
-  const Mesh& mesh = *input.mesh;
-  const Face& face = mesh.faces[face_number];
-  Candidate candidate{{nullptr, nullptr},
-                      {&mesh.vertices[vertices[0]], &mesh.vertices[vertices[1]], &mesh.vertices[vertices[2]]},
-                      &mesh.vertices[mesh.indices[face.first]],
-                      {0, 0, 0},
-                      face_number + 1,
-                      {nullptr, nullptr, nullptr}};
-  if (input.previous_clip != nullptr)
-    for (int i = 0; i < 3; ++i) candidate.previous[i] = input.previous_clip + 4 * size_t{vertices[i]};
-  bool needs_normal = false;
-  for (int r = 0; r < 2; ++r) {
-    if (input.surfaces[r] == nullptr) continue;
-    candidate.surfaces[r] = &(*input.surfaces[r])[face.material];
-    needs_normal |= candidate.surfaces[r]->lit != Surface::Lit::no;
-  }
-  bool has_normal = false;
+  Candidate candidate;
+  bool has_candidate = false;
   uint64_t drawn = 0, degenerate = 0;
   for (int i = 1; i + 1 < n; ++i) {
     const ScreenVertex triangle_corners[3] = {screen[0], screen[i], screen[i + 1]};
-    RasterTriangle triangle;
-    const SetupResult result = setup_triangle(triangle_corners, input.viewport, input.hull, triangle);
-    degenerate += result == SetupResult::degenerate ? 1 : 0;
-    if (result == SetupResult::degenerate || result == SetupResult::missed) continue;
-    const bool front = result == SetupResult::front;
-    if (!front && candidate.surfaces[0]->drop_back_faces) continue;
-    if (needs_normal && !has_normal) {
-      candidate.normal = face_normal(mesh, face);
-      has_normal = true;
-    }
     RasterTriangle* const stored = chunk.triangles.allocate(1);
-    *stored = triangle;
+    const SetupResult result = setup_triangle(triangle_corners, input.viewport, input.hull, *stored);
+    degenerate += result == SetupResult::degenerate ? 1 : 0;
+    const bool front = result == SetupResult::front;
+    if (result == SetupResult::degenerate || result == SetupResult::missed || (!front && drop_back_faces)) {
+      chunk.triangles.release(1);
+      continue;
+    }
+    if (!has_candidate) fill_candidate(input, face_number, vertices, chunk, candidate);
+    has_candidate = true;
     stored->id = candidate.id;
     stored->attributes[0] = stored->attributes[1] = stored->attributes[2] = nullptr;
     stored->state[0] = stored->state[1] = 0;
     const ClipVertex* const clip_corners[3] = {&polygon[0], &polygon[i], &polygon[i + 1]};
-    attach_attributes(input, candidate, clip_corners, front, chunk.attributes, *stored);
+    attach_attributes(input, candidate, whole ? nullptr : clip_corners, front, chunk.attributes, *stored);
     chunk.list.push_back(stored);
     ++drawn;
   }

@@ -8,6 +8,7 @@
 #include "base/kernels/kernels.h"
 #include "base/parallel.h"
 #include "raster/clip.h"
+#include "raster/lit_vertices.h"
 #include "raster/renderer.h"
 #include "raster/setup.h"
 #include "raster/surface.h"
@@ -30,6 +31,8 @@ class Arena {
     used_ += n;
     return result;
   }
+  // Gives back the last n elements of the last allocation.
+  void release(size_t n) { used_ -= n; }
   void reset() { block_ = used_ = 0; }
 
  private:
@@ -48,6 +51,17 @@ struct FrameInput {
   SampleHull hull;
   const std::vector<Surface>* surfaces[2];
   const float* previous_clip;  // four a vertex, or null where nobody asks where things were
+};
+
+// A triangle that survived the trivial rejections, with what its face contributes.
+struct Candidate {
+  const Surface* surfaces[2];
+  const Vertex* vertices[3];
+  const float* lit[2][3];  // colors of the vertices where they were lit before, or null
+  const Vertex* first;
+  FaceNormal normal;  // of unit length
+  uint32_t id;
+  const float* previous[3];  // clip coordinates in the previous frame, if wanted
 };
 
 // The triangles of a frame in scene order, by tile. Rebuilt each frame; keeps its memory.
@@ -75,6 +89,8 @@ class DrawList {
     std::vector<uint32_t> bin_start;          // per tile, and one past the end: where its part of `bins` starts
     std::vector<const RasterTriangle*> bins;  // by tile, in order
     PolygonCutter cutter;
+    uint32_t normal_of = UINT32_MAX;  // the face whose unit normal is in `normal`
+    FaceNormal normal{};
     RenderStats stats;
     Result<void> result;
   };
@@ -82,9 +98,15 @@ class DrawList {
   void process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk);
   void process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk);
   void process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk);
+  bool is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const;
+  void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
+                      Candidate& out) const;
   void fill_bins(Chunk& chunk) const;
 
+  const FaceNormal& unit_normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
+
   std::vector<TransformedVertex> vertices_;
+  LitVertices lit_[2];  // per rendering
   std::vector<Chunk> chunks_;
   size_t n_chunks_ = 0;
   int tiles_x_ = 0, tiles_y_ = 0;

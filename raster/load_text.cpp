@@ -123,6 +123,12 @@ NumberKind parse_float(std::string_view word, float& value) {
     }
   }
   if (n_digits == 0) return NumberKind::malformed;
+  // "3.1+e2": the number ends before the sign, as strtod and other OBJ readers have it.
+  if (i + 1 < word.size() && (word[i] == '+' || word[i] == '-') && (word[i + 1] == 'e' || word[i + 1] == 'E')) {
+    int64_t ignored = 0;
+    if (!parse_integer(word.substr(i + 2), ignored)) return NumberKind::malformed;
+    word = word.substr(0, i);
+  }
   if (i < word.size()) {
     int64_t written = 0;
     if ((word[i] != 'e' && word[i] != 'E') || !parse_integer(word.substr(i + 1), written)) return NumberKind::malformed;

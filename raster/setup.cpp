@@ -1,6 +1,7 @@
 #include "raster/setup.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace pac::raster {
@@ -29,8 +30,8 @@ void set_edges(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVerte
   out.a[0] = -(out.a[1] + out.a[2]);
   out.b[0] = -(out.b[1] + out.b[2]);
   for (int i = 0; i < 3; ++i) out.exclude[i] = is_top_left(out.a[i], out.b[i]) ? 0 : 1;
-  out.shift = 0;
-  while ((out.area2 >> out.shift) > INT32_MAX) ++out.shift;
+  const int bits = 64 - std::countl_zero(static_cast<uint64_t>(out.area2));
+  out.shift = bits > 31 ? bits - 31 : 0;
 }
 
 void set_depth(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVertex& v2, RasterTriangle& out) {
@@ -74,8 +75,8 @@ SetupResult setup_triangle(const ScreenVertex corners[3], const Viewport& viewpo
     area2 = -area2;
     std::swap(v1, v2);
   }
-  const auto [x_min, x_max] = std::minmax({v0.x, v1->x, v2->x});
-  const auto [y_min, y_max] = std::minmax({v0.y, v1->y, v2->y});
+  const int32_t x_min = std::min(v0.x, std::min(v1->x, v2->x)), x_max = std::max(v0.x, std::max(v1->x, v2->x));
+  const int32_t y_min = std::min(v0.y, std::min(v1->y, v2->y)), y_max = std::max(v0.y, std::max(v1->y, v2->y));
   const PixelRange columns = pixel_range(x_min, x_max, hull.min_x, hull.max_x, viewport.width);
   const PixelRange rows = pixel_range(y_min, y_max, hull.min_y, hull.max_y, viewport.height);
   if (columns.first > columns.last || rows.first > rows.last) return SetupResult::missed;

@@ -24,8 +24,11 @@ void TilePainter::paint(const PaintInput& input, int tile) {
     rasterize(input, origin);
     if (s == 0) write_depth_and_id(input, area);
     if (s == 0 && !input.previous.empty()) write_previous(input, area, origin);
+    const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+    if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
     for (int r = 0; r < n_renderings; ++r) {
-      n_packs_ = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+      if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
+      n_packs_ = n_packs;
       shade(input, {r, s, origin});
     }
   }

@@ -62,7 +62,7 @@ class TilePainter {
   alignas(64) float specular_[3 * kBatchLanes];
   alignas(64) float visibility_[(kMaxKernelLights + 1) * kBatchLanes];
   std::vector<const RasterTriangle*> triangles_;
-  LanePack packs_[kTilePixels], batch_[kTilePixels];
+  LanePack packs_[kTilePixels], batch_[kTilePixels], shared_packs_[kTilePixels];
   int n_packs_ = 0;
 };
 

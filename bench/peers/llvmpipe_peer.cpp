@@ -2,9 +2,7 @@
 // the process, the smallest of many frames. A frame is clear, draw and finish into an off-screen buffer, without
 // reading back.
 //
-//   g++ -std=c++20 -O2 -ffp-contract=off -I. bench/peers/llvmpipe_peer.cpp -o llvmpipe_peer
-//     build/release/libpac_raster.a build/release/libpac_base.a -lOSMesa -lpthread
-//   ./llvmpipe_peer [threads [part of a row's name]]        (Debian: libosmesa6-dev)
+//   build/release/bench/peers/llvmpipe_peer [threads [part of a row's name]]        (Debian: libosmesa6-dev)
 //
 // Supersampling in GL is a rendering at 4 times the width and height without the box filter, which favors the peer.
 #define GL_GLEXT_PROTOTYPES

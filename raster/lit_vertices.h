@@ -1,0 +1,36 @@
+// Gouraud lighting of each vertex once, however many triangles share it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "raster/clip.h"
+#include "raster/surface.h"
+
+namespace pac::raster {
+
+// Keeps its memory between frames.
+class LitVertices {
+ public:
+  // Lights the vertices in view whose own normal is on the eye's side, each with the material of the last face that
+  // names it. Does nothing where no material is lit at corners. Faces need not be valid. `transformed`: one a vertex.
+  void prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
+               const std::vector<TransformedVertex>& transformed, ThreadPool& pool);
+
+  // Color and specular color (six floats) of a vertex under a material by its own normal, or null: light it there.
+  const float* find(uint32_t vertex, uint32_t material) const {
+    return material < n_materials_ && materials_[vertex] == material ? &colors_[6 * size_t{vertex}] : nullptr;
+  }
+
+ private:
+  void assign_materials(const Mesh& mesh, const std::vector<Surface>& surfaces);
+  void light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
+                   const std::vector<TransformedVertex>& transformed, size_t first, size_t last);
+
+  size_t n_materials_ = 0;           // 0: nothing prepared
+  std::vector<uint32_t> materials_;  // a vertex; kNone = not lit
+  std::vector<float> colors_;        // six a vertex
+};
+
+}  // namespace pac::raster
