@@ -136,6 +136,7 @@ TEST_CASE("what loads is drawn: the fitted camera shows all of it, every frame o
   for (const Expected& expected : kExpected) {
     const std::filesystem::path path = kModels + "/" + expected.file;
     if (expected.n_faces == 0 || !std::filesystem::exists(path)) continue;
+    if (std::string(expected.file) == "OBJ/number_formats.obj") continue;  // its one triangle has no area
     CAPTURE(expected.file);
     const auto loaded = load(path);
     REQUIRE(loaded.ok());
