@@ -66,7 +66,7 @@ EncodeOptions options_for(Effort effort, Tune tune, double quality) {
   options.tune = tune;
   options.table_source = TableSource::tuned;
   options.huffman = effort == Effort::fast ? Huffman::standard : Huffman::optimal;
-  options.dead_zone = effort == Effort::fast ? 0.0 : 0.14;
+  options.dead_zone = effort == Effort::fast ? 0.0 : 0.18;
   options.trellis = effort == Effort::best;
   return options;
 }

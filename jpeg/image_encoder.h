@@ -33,6 +33,8 @@ class ImageEncoder {
   void set_up(const QuantTables& tables, double quality);
   void quantize(int mcu_row);
   void measure_costs();
+  void measure_visibility();
+  double importance_of(int c, const int16_t* coefficients) const;
 
   EncodeOptions options_;
   const Kernels* kernels_ = nullptr;
@@ -41,7 +43,8 @@ class ImageEncoder {
   BlockQuantizer quantizers_[2];
   TrellisWeights weights_[2];
   AcCosts costs_[2];
-  bool use_trellis_ = false;  // costs_ are known
+  double mean_visibility_ = 0;  // of the luma blocks; 0: all blocks count the same
+  bool use_trellis_ = false;    // costs_ are known
   Levels levels_;
   Tokenizer tokenizer_;
   BlockWalker walker_;

@@ -35,10 +35,10 @@ struct QuantTables {
 // give exactly the IJG's (force_baseline) tables.
 QuantTables annex_k_tables(double quality);
 
-// Tables of a tuning at a quality in (0, 100] on the IJG scale (a flat luma step of 28 at quality 50, scaled alike).
-//   psnr    flat, chroma 0.6 times luma: least squared error of RGB for the bytes
-//   ssim    flat, chroma 1.3 times luma: structure of luma
-//   visual  Annex K's shape: the eye's contrast sensitivity
+// Tables of a tuning at a quality in (0, 100] on the IJG scale. At quality 50:
+//   psnr    nearly flat, 28 to 34, chroma 0.6 times luma: least squared error of RGB for the bytes
+//   ssim    the same luma, chroma twice that: structure of luma
+//   visual  18 to 80, rising with frequency, chroma alike: what SSIMULACRA 2.1 sees
 QuantTables tuned_tables(Tune tune, double quality);
 
 // Tables for the difference image D = 127 + (H - L) / 2 [Levoy95 s.3]: every step halved, rounded up from .5, at
@@ -69,7 +69,7 @@ struct EncodeOptions {
 };
 
 // Presets, all with tuned_tables(tune): fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables
-// and dead zone 0.14; best = normal with the trellis.
+// and dead zone 0.18; best = normal with the trellis, which for ssim and visual lets errors hide in busy blocks.
 EncodeOptions options_for(Effort effort, Tune tune, double quality);
 
 // A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).
@@ -102,7 +102,7 @@ class Encoder {
 
 // Tables with the least rate for their distortion, chosen step by step from the histograms of the image's DCT
 // coefficients (RD-OPT: Ratnakar and Livny, DCC 1995): minimal D + lambda R, R the entropy of the levels at each
-// frequency, D the squared error, weighted as `tune` says (visual: by Annex K's steps). lambda follows from `quality`
+// frequency, D the squared error, weighted by the steps of `tune`. lambda follows from `quality`
 // so that the bytes come near those of tuned_tables(tune, quality). Errors: as encode.
 Result<QuantTables> adapted_tables(ConstRgbView image, Subsampling subsampling, Tune tune, double quality);
 

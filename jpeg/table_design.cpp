@@ -12,8 +12,8 @@
 namespace pac::jpeg {
 namespace {
 
-// The designed quantizer rounds |x| / step up from .64, as the encoder's dead zone of 0.14 does.
-constexpr double kRoundingOffset = 0.36;
+// The designed quantizer rounds |x| / step up from .68, as the encoder's dead zone of 0.18 does.
+constexpr double kRoundingOffset = 0.32;
 
 double log2_of(double x) {
   return exact_log(x) * 1.44269504088896340736;

@@ -51,14 +51,27 @@ QuantTable scaled(const double (&base)[64], double percent) {
   return table;
 }
 
-// Steps at quality 50.
+// Steps at quality 50 by u + v, the sum of a coefficient's frequencies. Found by descent over a few parameters (height,
+// slope and bend of luma and of chroma) to the least bytes at equal quality, mean of photographs, renderings and
+// difference images, with the trellis: ssim at SSIM, visual at SSIMULACRA 2.1. Their heights are such that a quality
+// takes about the bytes that it takes with Annex K's tables.
+constexpr double kVisualLuma[15] = {18.0, 30.4, 36.9, 42.3, 46.9, 51.1, 55.0, 58.7,
+                                    62.1, 65.4, 68.6, 71.6, 74.5, 77.4, 80.1};
+constexpr double kVisualChroma[15] = {21.2, 31.0, 36.1, 40.3, 44.0, 47.3, 50.4, 53.2,
+                                      56.0, 58.6, 61.0, 63.4, 65.7, 67.9, 70.1};
+constexpr double kSsimChroma[15] = {56.0, 60.6, 63.7, 66.4, 68.9, 71.2, 73.4, 75.4,
+                                    77.5, 79.4, 81.3, 83.2, 85.0, 86.7, 88.5};
+
 ReferenceSteps tuned_base(Tune tune) {
-  constexpr double kFlatLuma = 28.0;  // about as many bytes as Annex K's tables
+  constexpr double kFlatLuma = 28.0, kSlope = 0.2, kPsnrChroma = 0.6;
   ReferenceSteps base;
   for (int i = 0; i < 64; ++i) {
-    const double chroma_ratio = tune == Tune::psnr ? 0.6 : 1.3;
-    base.luma[i] = tune == Tune::visual ? kAnnexKLuma[i] : kFlatLuma;
-    base.chroma[i] = tune == Tune::visual ? kAnnexKChroma[i] : kFlatLuma * chroma_ratio;
+    const int frequency = i % 8 + i / 8;
+    const double sloped = kFlatLuma * (1.0 + kSlope * frequency / 14.0);
+    base.luma[i] = tune == Tune::visual ? kVisualLuma[frequency] : sloped;
+    base.chroma[i] = tune == Tune::visual ? kVisualChroma[frequency]
+                     : tune == Tune::ssim ? kSsimChroma[frequency]
+                                          : kPsnrChroma * sloped;
   }
   return base;
 }
@@ -97,7 +110,12 @@ QuantTables scaled_tables(const ReferenceSteps& base, double quality) {
 }
 
 QuantTables annex_k_tables(double quality) {
-  return scaled_tables(tuned_base(Tune::visual), quality);
+  ReferenceSteps base;
+  for (int i = 0; i < 64; ++i) {
+    base.luma[i] = kAnnexKLuma[i];
+    base.chroma[i] = kAnnexKChroma[i];
+  }
+  return scaled_tables(base, quality);
 }
 
 QuantTables tuned_tables(Tune tune, double quality) {

@@ -1,6 +1,7 @@
 #include "jpeg/trellis.h"
 
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 
 #include "base/kernels/block_kernels.h"
@@ -13,6 +14,9 @@ namespace {
 // Predecessors examined for each coefficient: the nearest ones. Longer skips over levels that are not 0 are never the
 // best choice in practice, and dense blocks would take quadratic time.
 constexpr int kMaxLookBack = 12;
+
+// Squared levels: below this variance errors show no more than in flat blocks.
+constexpr double kMaskFloor = 100.0;
 
 struct Stage {
   int k = 0;             // zigzag position
@@ -52,14 +56,22 @@ TrellisWeights trellis_weights(const QuantTable& steps, const double (&reference
   return weights;
 }
 
-void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, const AcCosts& costs, int16_t* levels,
-                      uint64_t& nonzero) {
+double visibility(const int16_t* coefficients) {
+  int64_t sum = 0;  // of 64 squares below 2^28
+  for (int i = 1; i < 64; ++i) sum += coefficients[i] * coefficients[i];
+  // The transform is orthonormal but for kDctScale: its sum of squares is 64 times the variance.
+  const double variance = static_cast<double>(sum) / (64.0 * kDctScale * kDctScale);
+  return 1.0 / std::sqrt(variance + kMaskFloor);
+}
+
+void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, double importance,
+                      const AcCosts& costs, int16_t* levels, uint64_t& nonzero) {
   // zero_cost[k]: J of making positions 1..k all zero.
   double zero_cost[64];
   zero_cost[0] = 0.0;
   for (int k = 1; k < 64; ++k) {
     const double c = coefficients[kNaturalFromZigzag[k]];
-    zero_cost[k] = zero_cost[k - 1] + weights.weight[k] * c * c;
+    zero_cost[k] = zero_cost[k - 1] + importance * weights.weight[k] * c * c;
   }
   Stage stages[63];
   int n_stages = 0, best_end = -1;
@@ -72,7 +84,7 @@ void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights
     bool first = true;
     for (int level = rounded; level >= 1 && level >= rounded - 1; --level) {
       const double error = magnitude - level * weights.divisor[k];
-      const double distortion = weights.weight[k] * error * error;
+      const double distortion = importance * weights.weight[k] * error * error;
       const int size = static_cast<int>(std::bit_width(static_cast<uint32_t>(level)));
       const int oldest = n_stages > kMaxLookBack ? n_stages - kMaxLookBack : 0;
       for (int j = n_stages - 1; j >= oldest - 1; --j) {

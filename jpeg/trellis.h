@@ -26,8 +26,12 @@ TrellisWeights trellis_weights(const QuantTable& steps, const double (&reference
 // Chooses among, for each coefficient that rounds to a level other than 0, that level, the next smaller one and 0, the
 // choice with the least J over all runs and ends of block (dynamic programming over the last level that is not 0).
 // levels, nonzero: rounded to nearest at entry (zigzag order), replaced. coefficients: natural order, scaled by 8. DC
-// stays.
-void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, const AcCosts& costs, int16_t* levels,
-                      uint64_t& nonzero);
+// stays. importance: what the block's errors count, 1 = as `weights` say.
+void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, double importance,
+                      const AcCosts& costs, int16_t* levels, uint64_t& nonzero);
+
+// How much a block's errors show beside others' [masking]: 1 / sqrt(variance of its samples + 100). SSIM divides errors
+// by the variance; by its root, measured, fewest bytes give that SSIM, because other blocks' bits become too dear else.
+double visibility(const int16_t* coefficients);
 
 }  // namespace pac::jpeg

@@ -1,0 +1,43 @@
+// Files of mozjpeg for jpeg_bytes: NAME.moz-default.QUALITY.jpg and NAME.moz-flat.QUALITY.jpg beside each NAME.ppm.
+//   npm install @jsquash/jpeg && node mozjpeg_files.mjs NAME.ppm ...      (from the folder that has node_modules)
+// Baseline, 4:2:0, trellis on, as its defaults are; moz-flat: its table 1, which -tune-psnr and -tune-ssim use.
+import fs from 'node:fs';
+import {createRequire} from 'node:module';
+import {pathToFileURL} from 'node:url';
+
+const require = createRequire(process.cwd() + '/');
+const {default: encode, init} = await import(pathToFileURL(require.resolve('@jsquash/jpeg/encode.js')));
+const wasm = require.resolve('@jsquash/jpeg/codec/enc/mozjpeg_enc.wasm');
+await init(await WebAssembly.compile(fs.readFileSync(wasm)));
+
+// P6 with 8-bit samples and no comment.
+function readPpm(path) {
+  const bytes = fs.readFileSync(path);
+  let at = 0;
+  const word = () => {
+    const begin = at;
+    while (bytes[at] > 32) ++at;
+    return bytes.toString('latin1', begin, at++);
+  };
+  word();
+  const width = Number(word()), height = Number(word());
+  word();
+  const data = new Uint8ClampedArray(4 * width * height).fill(255);
+  for (let i = 0; i < width * height; ++i)
+    for (let c = 0; c < 3; ++c) data[4 * i + c] = bytes[at + 3 * i + c];
+  return {data, width, height};
+}
+
+for (const path of process.argv.slice(2)) {
+  const image = readPpm(path);
+  for (const [name, quant_table] of [['moz-default', 3], ['moz-flat', 1]]) {
+    for (const quality of [15, 30, 45, 60, 75, 84, 90]) {
+      const file = await encode(image, {
+        quality, quant_table, baseline: true, progressive: false, arithmetic: false, optimize_coding: true, smoothing: 0,
+        color_space: 3, trellis_multipass: false, trellis_opt_zero: false, trellis_opt_table: false, trellis_loops: 1,
+        auto_subsample: false, chroma_subsample: 2, separate_chroma_quality: false, chroma_quality: quality,
+      });
+      fs.writeFileSync(path.replace(/\.ppm$/, `.${name}.${quality}.jpg`), Buffer.from(file));
+    }
+  }
+}
