@@ -1,4 +1,5 @@
-// Positions and colors as differences from predictions, adaptively coded. FORMAT.md sections 5 and 6.
+// What vertices carry beside positions: colors, normals, texture coordinates, predicted from vertices before them and
+// from the positions, which are complete. FORMAT.md sections 7, 8, 9.
 #pragma once
 
 #include <cstdint>
@@ -7,22 +8,30 @@
 
 #include "base/result.h"
 #include "geomcodec/geomcodec.h"
+#include "geomcodec/stencil.h"
 #include "geomcodec/topology.h"
 
 namespace pac::geomcodec {
 
-struct CodedAttributes {
-  std::vector<uint8_t> positions, colors;  // colors empty if they are constant
-};
-// vertices in coded order: those that faces use, then the isolated ones.
-CodedAttributes encode_attributes(const Topology& topology, std::span<const QuantizedVertex> vertices,
-                                  int position_bits, bool constant_color);
+// Everything the predictions may use. Vertices in coded order, isolated ones last; their positions are set.
+struct AttributeMesh {
+  const Topology& topology;           // over vertices, cut at seams
+  const Stencils& stencils;           // of `topology`
+  std::span<const uint32_t> sibling;  // per vertex that faces use: Seams::sibling
 
-// Appends n_vertices vertices to `vertices` as they are read; with constant_color their color stays that of `fill`.
-// byte_offset of failures counts from the first byte of the section.
-Result<void> decode_attributes(const Topology& topology, std::span<const uint8_t> positions,
-                               std::span<const uint8_t> colors, uint32_t n_vertices, int position_bits,
-                               bool constant_color, const QuantizedVertex& fill,
-                               std::vector<QuantizedVertex>& vertices);
+  uint32_t sibling_of(uint32_t vertex) const { return vertex < sibling.size() ? sibling[vertex] : kNone; }
+};
+
+std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices);
+std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits);
+std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits);
+
+// Fill the attribute of all vertices. byte_offset of failures counts from the first byte of the section.
+Result<void> decode_colors(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
+                           std::span<QuantizedVertex> vertices);
+Result<void> decode_normals(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
+                            std::span<QuantizedVertex> vertices, int bits);
+Result<void> decode_texcoords(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
+                              std::span<QuantizedVertex> vertices, int bits);
 
 }  // namespace pac::geomcodec

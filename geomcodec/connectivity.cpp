@@ -20,6 +20,7 @@ constexpr uint32_t kMaxDegree = 9;  // faces around a vertex, as contexts count 
 struct Models {
   AdaptiveBit face_across_left[kMaxDegree + 1][2][2];
   AdaptiveBit face_across_right[kMaxDegree + 1][2][2];
+  AdaptiveBit same_size[3];  // as the gate's face, by its size: 3, 4, more
   NumberModel face_size[4];
   AdaptiveBit step_left[kPlaces][8][kMaxDegree + 1][kSteps];
   AdaptiveBit step_right[kPlaces][8][kMaxDegree + 1][kSteps][kSteps];
@@ -29,7 +30,7 @@ struct Models {
 // The faces of the encoder's mesh by directed edge.
 class EdgeIndex {
  public:
-  EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces);
+  EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, uint32_t n_vertices);
   // A face that is not taken and has an edge from -> to: the lowest one. Its number and the corner at `from`.
   bool find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corner);
   // The lowest face that is not taken; there must be one.
@@ -41,33 +42,45 @@ class EdgeIndex {
 
  private:
   struct Edge {
-    uint32_t from, to, face, corner;
+    uint32_t to, face, corner;
     bool operator<(const Edge& o) const {
-      if (from != o.from) return from < o.from;
       if (to != o.to) return to < o.to;
       return face != o.face ? face < o.face : corner < o.corner;
     }
   };
-  std::vector<Edge> edges_;            // sorted
+  std::vector<uint32_t> first_;  // per vertex: its edges are edges_[first_[v]] .. edges_[first_[v + 1] - 1], sorted
+  std::vector<Edge> edges_;
   std::vector<uint32_t> free_offset_;  // at the first edge of each run of equal (from, to): edges known to be taken
   std::vector<uint8_t> taken_;
   uint32_t lowest_free_ = 0;
 };
 
-EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces) : taken_(faces.size()) {
-  for (uint32_t f = 0; f < faces.size(); ++f)
-    for (uint32_t k = 0; k < faces[f].count; ++k)
-      edges_.push_back({indices[faces[f].first + k], indices[faces[f].first + (k + 1) % faces[f].count], f, k});
-  std::sort(edges_.begin(), edges_.end());
-  free_offset_.assign(edges_.size(), 0);
+EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, uint32_t n_vertices)
+    : first_(size_t{n_vertices} + 1), taken_(faces.size()) {
+  uint32_t n_edges = 0;
+  for (const Face& face : faces) {
+    n_edges += face.count;
+    for (uint32_t k = 0; k < face.count; ++k) ++first_[indices[face.first + k] + 1];
+  }
+  for (uint32_t v = 0; v < n_vertices; ++v) first_[v + 1] += first_[v];
+  edges_.resize(n_edges);
+  free_offset_.assign(n_edges, 0);
+  std::vector<uint32_t> end(first_.begin(), first_.end() - 1);
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const uint32_t* corner = indices.data() + faces[f].first;
+    const uint32_t count = faces[f].count;
+    for (uint32_t k = 0; k < count; ++k) edges_[end[corner[k]]++] = {corner[k + 1 < count ? k + 1 : 0], f, k};
+  }
+  for (uint32_t v = 0; v < n_vertices; ++v) std::sort(edges_.begin() + first_[v], edges_.begin() + first_[v + 1]);
 }
 
 bool EdgeIndex::find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corner) {
-  const size_t run =
-      static_cast<size_t>(std::lower_bound(edges_.begin(), edges_.end(), Edge{from, to, 0, 0}) - edges_.begin());
-  if (run == edges_.size()) return false;
-  for (size_t i = run + free_offset_[run]; i < edges_.size(); ++i) {
-    if (edges_[i].from != from || edges_[i].to != to) return false;
+  const size_t end = first_[from + 1];
+  const size_t run = static_cast<size_t>(
+      std::lower_bound(edges_.begin() + first_[from], edges_.begin() + first_[from + 1], Edge{to, 0, 0}) -
+      edges_.begin());
+  if (run == end) return false;
+  for (size_t i = run + free_offset_[run]; i < end && edges_[i].to == to; ++i) {
     if (taken_[edges_[i].face] == 0) {
       face = edges_[i].face;
       corner = edges_[i].corner;
@@ -81,7 +94,10 @@ bool EdgeIndex::find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corne
 // What only the encoder has.
 struct Source {
   Source(std::span<const uint32_t> mesh_indices, std::span<const Face> mesh_faces, uint32_t n_vertices)
-      : indices(mesh_indices), faces(mesh_faces), edges(mesh_indices, mesh_faces), coded_vertex(n_vertices, kNone) {}
+      : indices(mesh_indices),
+        faces(mesh_faces),
+        edges(mesh_indices, mesh_faces, n_vertices),
+        coded_vertex(n_vertices, kNone) {}
   std::span<const uint32_t> indices;
   std::span<const Face> faces;
   EdgeIndex edges;
@@ -98,8 +114,12 @@ struct Source {
 template <class Coder>
 class Walk {
  public:
-  Walk(Coder& coder, const ConnectivityHeader& header, Source* source)
-      : coder_(coder), header_(header), source_(source), open_(topology_), models_(1) {}
+  Walk(Coder& coder, const ConnectivityHeader& header, Source* source, uint64_t expected_corners)
+      : coder_(coder), header_(header), source_(source), open_(topology_), models_(1) {
+    // What so many bytes usually hold; a regular mesh grows beyond it.
+    reserve(std::min<uint64_t>(header.n_corners, expected_corners));
+    topology_.all_triangles = header.n_corners == uint64_t{3} * header.n_faces;
+  }
 
   // False: the data cannot come from an encoder.
   bool run() {
@@ -119,6 +139,12 @@ class Walk {
   Topology take() { return std::move(topology_); }
 
  private:
+  void reserve(uint64_t n_corners) {
+    topology_.corner_vertex.reserve(n_corners);
+    topology_.corner_face.reserve(n_corners);
+    topology_.twin.reserve(n_corners);
+    topology_.face_first.reserve(n_corners / 3 + 2);
+  }
   static uint32_t clamped(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
   uint32_t start_of(uint32_t corner) const { return topology_.corner_vertex[corner]; }
   uint32_t end_of(uint32_t corner) const { return start_of(topology_.next(corner)); }
@@ -128,6 +154,7 @@ class Walk {
   bool code_seed();
   bool code_face(uint32_t gate);
   uint32_t code_size(uint32_t context);
+  uint32_t code_size_across(uint32_t gate_size);
   bool code_corner(uint32_t k, Place place);
   Step code_step(Place place, const std::array<uint32_t, kOld>& candidate, uint32_t wanted);
   uint32_t code_old_vertex(uint32_t wanted);
@@ -165,9 +192,21 @@ bool Walk<Coder>::face_across(uint32_t gate) {
 
 template <class Coder>
 uint32_t Walk<Coder>::code_size(uint32_t context) {
+  if (topology_.all_triangles) return 0;
   uint32_t wanted = 0;
   if constexpr (!Coder::kDecodes) wanted = source_->faces[source_->face].count - 3;
   return code_number(coder_, models_[0].face_size[context], wanted);
+}
+
+// Corners less 3 of the face across a gate: mostly those of the gate's own face.
+template <class Coder>
+uint32_t Walk<Coder>::code_size_across(uint32_t gate_size) {
+  if (topology_.all_triangles) return 0;
+  const uint32_t context = gate_size == 3 ? 0 : gate_size == 4 ? 1 : 2;
+  uint32_t same = 0;
+  if constexpr (!Coder::kDecodes) same = source_->faces[source_->face].count == gate_size ? 1 : 0;
+  if (coder_.bit(models_[0].same_size[context], same) != 0) return gate_size - 3;
+  return code_size(context);
 }
 
 // The first face of a part that shares no edge with what was walked.
@@ -190,8 +229,8 @@ bool Walk<Coder>::code_seed() {
 // The face across the gate a -> b: its corners are b, a, then those that are coded.
 template <class Coder>
 bool Walk<Coder>::code_face(uint32_t gate) {
-  const uint32_t gate_size = topology_.face_size(topology_.corner_face[gate]);
-  const uint32_t size_less_3 = code_size(gate_size == 3 ? 0 : gate_size == 4 ? 1 : 2);
+  const uint32_t gate_size = topology_.size_of_face_at(gate);
+  const uint32_t size_less_3 = code_size_across(gate_size);
   const uint64_t room = header_.n_corners - topology_.n_corners();
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
   corners_.assign({end_of(gate), start_of(gate)});
@@ -277,9 +316,11 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
 template <class Coder>
 void Walk<Coder>::finish_face(uint32_t gate) {
   const uint32_t first = topology_.n_corners(), face = topology_.n_faces();
-  topology_.corner_vertex.insert(topology_.corner_vertex.end(), corners_.begin(), corners_.end());
-  topology_.corner_face.resize(topology_.corner_vertex.size(), face);
-  topology_.twin.resize(topology_.corner_vertex.size(), kOpen);
+  for (const uint32_t vertex : corners_) {
+    topology_.corner_vertex.push_back(vertex);
+    topology_.corner_face.push_back(face);
+    topology_.twin.push_back(kOpen);
+  }
   topology_.face_first.push_back(topology_.n_corners());
   if (gate != kNone) open_.pair(gate, first);
   for (uint32_t corner = first; corner < topology_.n_corners(); ++corner) {
@@ -310,7 +351,7 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
   CodedConnectivity coded;
   RangeEncoder coder;
   Source source(indices, faces, n_vertices);
-  Walk<RangeEncoder> walk(coder, header, &source);
+  Walk<RangeEncoder> walk(coder, header, &source, header.n_corners);
   PAC_ASSERT(walk.run());
   coded.topology = walk.take();
   coded.order = std::move(source.order);
@@ -320,7 +361,7 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
 
 Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header) {
   RangeDecoder coder(bytes);
-  Walk<RangeDecoder> walk(coder, header, nullptr);
+  Walk<RangeDecoder> walk(coder, header, nullptr, 4096 + 64 * uint64_t{bytes.size()});
   if (!walk.run()) return Failure{Error::corrupt, 0, "connectivity is damaged"};
   if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "connectivity does not end where the header says"};
   return walk.take();

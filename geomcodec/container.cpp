@@ -10,7 +10,15 @@ namespace {
 
 constexpr uint8_t kMagic[3] = {'P', 'G', 'C'};
 
-enum Flag : uint8_t { kKeepsOrder = 1, kConstantColor = 2, kUnitGrid = 4, kOneStep = 8, kAllFlags = 15 };
+enum Flag : uint8_t {
+  kKeepsOrder = 1,
+  kConstantColor = 2,
+  kUnitGrid = 4,
+  kOneStep = 8,
+  kHasNormals = 16,
+  kHasTexcoords = 32,
+  kAllFlags = 63
+};
 
 void put_varint(std::vector<uint8_t>& out, uint32_t value) {
   for (; value >= 0x80; value >>= 7) out.push_back(static_cast<uint8_t>(value | 0x80));
@@ -79,45 +87,107 @@ void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
       reader.fail(Error::corrupt, "grid is not finite");
 }
 
+void parse_attributes(ByteReader& reader, uint8_t flags, Header& header) {
+  if ((flags & kHasNormals) != 0) {
+    header.normal_bits = reader.u8();
+    if (header.normal_bits < 2 || header.normal_bits > 16) reader.fail(Error::corrupt, "normal bits are not in 2..16");
+  }
+  if ((flags & kHasTexcoords) == 0) return;
+  header.texcoord_bits = reader.u8();
+  if (header.texcoord_bits < 1 || header.texcoord_bits > 16)
+    reader.fail(Error::corrupt, "texture coordinate bits are not in 1..16");
+  for (float& origin : header.texcoord_origin) origin = std::bit_cast<float>(reader.u32());
+  header.texcoord_step = std::bit_cast<float>(reader.u32());
+  if (!std::isfinite(header.texcoord_origin[0]) || !std::isfinite(header.texcoord_origin[1]) ||
+      !std::isfinite(header.texcoord_step) || !(header.texcoord_step > 0))
+    reader.fail(Error::corrupt, "grid of the texture is not finite");
+}
+
 void parse_counts(ByteReader& reader, Header& header) {
   header.n_used_vertices = reader.count();
+  header.n_split_vertices = reader.count();
   header.n_isolated_vertices = reader.count();
   header.n_faces = reader.count();
   const uint64_t n_corners = uint64_t{3} * header.n_faces + reader.count();
   header.highest_material = reader.varint();
   if (n_corners > kMaxCount || uint64_t{header.n_used_vertices} + header.n_isolated_vertices > kMaxCount ||
       header.n_used_vertices > n_corners || (header.n_faces > 0 && header.n_used_vertices == 0) ||
+      (header.n_split_vertices > 0 && header.n_split_vertices >= header.n_used_vertices) ||
       (header.n_faces == 0 && (n_corners > 0 || header.highest_material > 0)))
     return reader.fail(Error::corrupt, "counts in the header contradict one another");
   header.n_corners = static_cast<uint32_t>(n_corners);
 }
 
-}  // namespace
+void put_float(std::vector<uint8_t>& out, float value) {
+  put_u32(out, std::bit_cast<uint32_t>(value));
+}
 
-std::vector<uint8_t> write_stream(const Header& header, const std::array<std::vector<uint8_t>, kSections>& sections,
-                                  uint64_t& header_bytes) {
+void put_grid(std::vector<uint8_t>& out, const Header& header, uint8_t flags) {
+  out.push_back(static_cast<uint8_t>(header.position_bits));
+  if ((flags & kUnitGrid) == 0) {
+    for (const float origin : header.origin) put_float(out, origin);
+    for (int axis = 0; axis < ((flags & kOneStep) != 0 ? 1 : 3); ++axis) put_float(out, header.step[axis]);
+  }
+  if (header.normal_bits != 0) out.push_back(static_cast<uint8_t>(header.normal_bits));
+  if (header.texcoord_bits == 0) return;
+  out.push_back(static_cast<uint8_t>(header.texcoord_bits));
+  for (const float origin : header.texcoord_origin) put_float(out, origin);
+  put_float(out, header.texcoord_step);
+}
+
+uint8_t flags_of(const Header& header) {
   bool unit_grid = true;
   for (int axis = 0; axis < 3; ++axis)
     unit_grid = unit_grid && std::bit_cast<uint32_t>(header.origin[axis]) == 0 && header.step[axis] == 1.0f;
   const bool one_step = header.step[0] == header.step[1] && header.step[0] == header.step[2];
+  return static_cast<uint8_t>((header.keeps_order ? kKeepsOrder : 0) | (header.constant_color ? kConstantColor : 0) |
+                              (unit_grid ? kUnitGrid : 0) | (one_step && !unit_grid ? kOneStep : 0) |
+                              (header.normal_bits != 0 ? kHasNormals : 0) |
+                              (header.texcoord_bits != 0 ? kHasTexcoords : 0));
+}
 
+}  // namespace
+
+bool Header::has(Section section) const {
+  switch (section) {
+    case kConnectivity:
+      return n_faces > 0;
+    case kSeams:
+      return n_split_vertices > 0;
+    case kPositions:
+      return n_vertices() > 0;
+    case kColors:
+      return n_vertices() > 0 && !constant_color;
+    case kNormals:
+      return n_vertices() > 0 && normal_bits != 0;
+    case kTexcoords:
+      return n_vertices() > 0 && texcoord_bits != 0;
+    case kMaterials:
+      return highest_material > 0;
+    case kOrder:
+      return keeps_order && n_vertices() > 0;
+    case kSections:
+      break;
+  }
+  return false;
+}
+
+std::vector<uint8_t> write_stream(const Header& header, const std::array<std::vector<uint8_t>, kSections>& sections,
+                                  uint64_t& header_bytes) {
+  const uint8_t flags = flags_of(header);
   std::vector<uint8_t> out(kMagic, kMagic + 3);
   out.push_back(kVersion);
-  out.push_back(static_cast<uint8_t>((header.keeps_order ? kKeepsOrder : 0) |
-                                     (header.constant_color ? kConstantColor : 0) | (unit_grid ? kUnitGrid : 0) |
-                                     (one_step && !unit_grid ? kOneStep : 0)));
-  out.push_back(static_cast<uint8_t>(header.position_bits));
-  if (!unit_grid) {
-    for (const float origin : header.origin) put_u32(out, std::bit_cast<uint32_t>(origin));
-    for (int axis = 0; axis < (one_step ? 1 : 3); ++axis) put_u32(out, std::bit_cast<uint32_t>(header.step[axis]));
-  }
+  out.push_back(flags);
+  put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
+  put_varint(out, header.n_split_vertices);
   put_varint(out, header.n_isolated_vertices);
   put_varint(out, header.n_faces);
   put_varint(out, header.n_corners - 3 * header.n_faces);
   put_varint(out, header.highest_material);
   if (header.constant_color) out.insert(out.end(), header.color, header.color + 4);
-  for (const std::vector<uint8_t>& section : sections) put_varint(out, static_cast<uint32_t>(section.size()));
+  for (uint32_t i = 0; i < kSections; ++i)
+    if (header.has(static_cast<Section>(i))) put_varint(out, static_cast<uint32_t>(sections[i].size()));
 
   uint32_t checksum = crc32(out);
   for (const std::vector<uint8_t>& section : sections) checksum = crc32(section, checksum);
@@ -142,15 +212,13 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.keeps_order = (flags & kKeepsOrder) != 0;
   header.constant_color = (flags & kConstantColor) != 0;
   parse_grid(reader, flags, header);
+  parse_attributes(reader, flags, header);
   parse_counts(reader, header);
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;
-  for (uint32_t& size : header.section_bytes) end += size = reader.count();
-  if ((header.constant_color && header.section_bytes[kColors] > 0) ||
-      (header.highest_material == 0 && header.section_bytes[kMaterials] > 0) ||
-      (!header.keeps_order && header.section_bytes[kOrder] > 0))
-    reader.fail(Error::corrupt, "section that the flags exclude");
+  for (uint32_t i = 0; i < kSections; ++i)
+    if (header.has(static_cast<Section>(i))) end += header.section_bytes[i] = reader.count();
   const uint64_t checksum_offset = reader.position();
   const uint32_t checksum = reader.u32();
   if (!reader.ok()) return reader.failure();
@@ -185,8 +253,12 @@ Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
   }
   info.constant_color = header.constant_color;
   info.keeps_order = header.keeps_order;
-  info.size = {parsed.header_bytes,           header.section_bytes[kConnectivity], header.section_bytes[kPositions],
-               header.section_bytes[kColors], header.section_bytes[kMaterials],    header.section_bytes[kOrder]};
+  info.normal_bits = header.normal_bits;
+  info.texcoord_bits = header.texcoord_bits;
+  info.n_points = header.n_points();
+  const auto& size = header.section_bytes;
+  info.size = {parsed.header_bytes, size[kConnectivity], size[kSeams],     size[kPositions], size[kColors],
+               size[kNormals],      size[kTexcoords],    size[kMaterials], size[kOrder]};
   return info;
 }
 

@@ -11,9 +11,19 @@
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 1;
+inline constexpr uint8_t kVersion = 2;
 
-enum Section : uint32_t { kConnectivity, kPositions, kColors, kMaterials, kOrder, kSections };
+enum Section : uint32_t {
+  kConnectivity,
+  kSeams,
+  kPositions,
+  kColors,
+  kNormals,
+  kTexcoords,
+  kMaterials,
+  kOrder,
+  kSections
+};
 
 struct Header {
   bool keeps_order = false;
@@ -21,7 +31,11 @@ struct Header {
   int position_bits = 16;
   float origin[3] = {0, 0, 0};
   float step[3] = {1, 1, 1};
+  int normal_bits = 0, texcoord_bits = 0;  // 0: none
+  float texcoord_origin[2] = {0, 0};
+  float texcoord_step = 1;
   uint32_t n_used_vertices = 0;      // those that faces use
+  uint32_t n_split_vertices = 0;     // of them: those at a position that one before them has
   uint32_t n_isolated_vertices = 0;  // the rest
   uint32_t n_faces = 0;
   uint32_t n_corners = 0;
@@ -30,6 +44,9 @@ struct Header {
   std::array<uint32_t, kSections> section_bytes = {};
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
+  uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
+  // Whether the fields above leave anything for a section to say.
+  bool has(Section section) const;
 };
 
 // Counts of vertices, faces, corners and section bytes may not exceed this.

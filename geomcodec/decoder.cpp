@@ -6,6 +6,8 @@
 #include "geomcodec/container.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
+#include "geomcodec/positions.h"
+#include "geomcodec/seams.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -51,6 +53,59 @@ Failure at(Failure failure, uint64_t offset) {
   return failure;
 }
 
+QuantizedMesh empty_mesh(const Header& header) {
+  QuantizedMesh mesh;
+  mesh.position_bits = header.position_bits;
+  std::copy(header.origin, header.origin + 3, mesh.origin);
+  std::copy(header.step, header.step + 3, mesh.step);
+  mesh.normal_bits = header.normal_bits;
+  mesh.texcoord_bits = header.texcoord_bits;
+  std::copy(header.texcoord_origin, header.texcoord_origin + 2, mesh.texcoord_origin);
+  mesh.texcoord_step = header.texcoord_step;
+  return mesh;
+}
+
+// All vertices with their positions, the other attributes not yet coded.
+Result<void> decode_vertices(const ParsedStream& stream, const Topology& points, const Seams& seams,
+                             QuantizedMesh& mesh) {
+  const Header& header = stream.header;
+  if (!header.has(kPositions)) return {};
+  auto positions = decode_positions(stream.section[kPositions], points, header.n_points() + header.n_isolated_vertices,
+                                    header.position_bits);
+  if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
+  QuantizedVertex fill;
+  if (header.constant_color) std::copy(header.color, header.color + 4, fill.color);
+  mesh.vertices.assign(header.n_vertices(), fill);
+  for (uint32_t v = 0; v < header.n_vertices(); ++v) {
+    const bool used = v < header.n_used_vertices;
+    const Position& position = (*positions)[used ? seams.vertex_point[v] : v - header.n_split_vertices];
+    std::copy(position.begin(), position.end(), mesh.vertices[v].position);
+  }
+  return {};
+}
+
+Result<void> decode_attributes(const ParsedStream& stream, const Topology& points, const Seams& seams,
+                               QuantizedMesh& mesh) {
+  const Header& header = stream.header;
+  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return {};
+  const Topology topology = cut_at_seams(points, seams);
+  const Stencils stencils(topology);
+  const AttributeMesh attributes{topology, stencils, seams.sibling};
+  if (header.has(kColors)) {
+    const auto done = decode_colors(stream.section[kColors], attributes, mesh.vertices);
+    if (!done) return at(done.failure(), stream.section_offset(kColors));
+  }
+  if (header.has(kNormals)) {
+    const auto done = decode_normals(stream.section[kNormals], attributes, mesh.vertices, header.normal_bits);
+    if (!done) return at(done.failure(), stream.section_offset(kNormals));
+  }
+  if (header.has(kTexcoords)) {
+    const auto done = decode_texcoords(stream.section[kTexcoords], attributes, mesh.vertices, header.texcoord_bits);
+    if (!done) return at(done.failure(), stream.section_offset(kTexcoords));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limits) {
@@ -58,32 +113,29 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
   const Header& header = stream.header;
   PAC_CHECK(check_limits(header, limits));
 
-  auto topology =
-      decode_connectivity(stream.section[kConnectivity], {header.n_used_vertices, header.n_faces, header.n_corners});
-  if (!topology) return at(topology.failure(), stream.section_offset(kConnectivity));
-  auto material = decode_materials(stream.section[kMaterials], *topology, header.highest_material);
+  Topology points;
+  if (header.has(kConnectivity)) {
+    auto decoded =
+        decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners});
+    if (!decoded) return at(decoded.failure(), stream.section_offset(kConnectivity));
+    points = std::move(*decoded);
+  }
+  auto seams = decode_seams(stream.section[kSeams], points, header.n_used_vertices);
+  if (!seams) return at(seams.failure(), stream.section_offset(kSeams));
+  auto material = decode_materials(stream.section[kMaterials], points, header.highest_material);
   if (!material) return at(material.failure(), stream.section_offset(kMaterials));
 
-  QuantizedMesh mesh;
-  mesh.position_bits = header.position_bits;
-  std::copy(header.origin, header.origin + 3, mesh.origin);
-  std::copy(header.step, header.step + 3, mesh.step);
-  QuantizedVertex fill;
-  std::copy(header.color, header.color + 4, fill.color);
-  auto vertices = decode_attributes(*topology, stream.section[kPositions], stream.section[kColors], header.n_vertices(),
-                                    header.position_bits, header.constant_color, fill, mesh.vertices);
-  if (!vertices) return at(vertices.failure(), stream.section_offset(kPositions));
-  for (uint32_t face = 0; face < topology->n_faces(); ++face)
-    mesh.faces.push_back({topology->face_first[face], topology->face_size(face), (*material)[face]});
-
-  WalkOrder order;
-  if (header.keeps_order) {
-    auto decoded = decode_order(stream.section[kOrder], *topology, header.n_vertices());
-    if (!decoded) return at(decoded.failure(), stream.section_offset(kOrder));
-    order = std::move(*decoded);
+  QuantizedMesh mesh = empty_mesh(header);
+  PAC_CHECK(decode_vertices(stream, points, *seams, mesh));
+  PAC_CHECK(decode_attributes(stream, points, *seams, mesh));
+  for (uint32_t face = 0; face < points.n_faces(); ++face)
+    mesh.faces.push_back({points.face_first[face], points.face_size(face), (*material)[face]});
+  mesh.indices = std::move(seams->corner_vertex);
+  if (header.has(kOrder)) {
+    auto order = decode_order(stream.section[kOrder], points, header.n_vertices());
+    if (!order) return at(order.failure(), stream.section_offset(kOrder));
+    restore_order(*order, mesh);
   }
-  mesh.indices = std::move(topology->corner_vertex);
-  if (header.keeps_order) restore_order(order, mesh);
   return mesh;
 }
 

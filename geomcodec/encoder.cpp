@@ -7,9 +7,33 @@
 #include "geomcodec/container.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
+#include "geomcodec/positions.h"
+#include "geomcodec/seams.h"
 
 namespace pac::geomcodec {
 namespace {
+
+Result<void> check_vertices(const QuantizedMesh& mesh) {
+  if (mesh.normal_bits != 0 && (mesh.normal_bits < 2 || mesh.normal_bits > 16))
+    return Failure{Error::bad_argument, 0, "normal bits are not 0 or in 2..16"};
+  if (mesh.texcoord_bits < 0 || mesh.texcoord_bits > 16)
+    return Failure{Error::bad_argument, 0, "texture coordinate bits are not in 0..16"};
+  if (!std::isfinite(mesh.texcoord_origin[0]) || !std::isfinite(mesh.texcoord_origin[1]) ||
+      !std::isfinite(mesh.texcoord_step) || !(mesh.texcoord_step > 0))
+    return Failure{Error::bad_argument, 0, "grid of the texture is not finite or has no step"};
+  const uint32_t highest = (1u << mesh.position_bits) - 1;
+  const uint32_t highest_normal = mesh.normal_bits == 0 ? 0 : (1u << mesh.normal_bits) - 2;
+  const uint32_t highest_texcoord = (1u << mesh.texcoord_bits) - 1;
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    for (const uint16_t coordinate : mesh.vertices[v].position)
+      if (coordinate > highest) return Failure{Error::bad_argument, v, "coordinate above the grid"};
+    for (const uint16_t component : mesh.vertices[v].normal)
+      if (component > highest_normal) return Failure{Error::bad_argument, v, "normal above its grid"};
+    for (const uint16_t component : mesh.vertices[v].texcoord)
+      if (component > highest_texcoord) return Failure{Error::bad_argument, v, "texture coordinate above its grid"};
+  }
+  return {};
+}
 
 Result<void> check(const QuantizedMesh& mesh) {
   if (mesh.position_bits < 1 || mesh.position_bits > 16)
@@ -30,34 +54,66 @@ Result<void> check(const QuantizedMesh& mesh) {
   }
   if (mesh.vertices.size() > kMaxCount || n_corners > kMaxCount)
     return Failure{Error::bad_argument, 0, "mesh has more than 2^31 - 1 vertices or corners"};
-  const uint32_t highest = (1u << mesh.position_bits) - 1;
-  for (size_t v = 0; v < mesh.vertices.size(); ++v)
-    for (const uint16_t coordinate : mesh.vertices[v].position)
-      if (coordinate > highest) return Failure{Error::bad_argument, v, "coordinate above the grid"};
-  return {};
+  return check_vertices(mesh);
 }
 
 // A walked mesh: its vertices and materials in coded order.
 struct Walked {
-  CodedConnectivity connectivity;
-  uint32_t n_used_vertices = 0;
+  Topology points;  // over points, as the walk numbers them
+  Seams seams;
+  WalkOrder order;  // vertex: all vertices of the mesh, isolated ones last
+  std::vector<uint8_t> connectivity_bytes, seam_bytes;
   std::vector<QuantizedVertex> vertices;
   std::vector<uint32_t> material;
 };
 
+// The mesh's vertex of each corner, in coded order.
+std::vector<uint32_t> corners_in_order(const QuantizedMesh& mesh, const WalkOrder& order) {
+  std::vector<uint32_t> corners;
+  corners.reserve(mesh.indices.size());
+  for (size_t i = 0; i < order.face.size(); ++i) {
+    const Face& face = mesh.faces[order.face[i]];
+    for (uint32_t k = 0; k < face.count; ++k)
+      corners.push_back(mesh.indices[face.first + (order.first_corner[i] + k) % face.count]);
+  }
+  return corners;
+}
+
 Walked walk(const QuantizedMesh& mesh) {
   Walked walked;
   const auto n_vertices = static_cast<uint32_t>(mesh.vertices.size());
-  walked.connectivity = encode_connectivity(mesh.indices, mesh.faces, n_vertices);
-  WalkOrder& order = walked.connectivity.order;
-  walked.n_used_vertices = static_cast<uint32_t>(order.vertex.size());
+  const Points points = find_points(mesh.vertices);
+  std::vector<uint32_t> point_indices;
+  point_indices.reserve(mesh.indices.size());
+  for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
+  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, points.count);
+  walked.points = std::move(connectivity.topology);
+  walked.connectivity_bytes = std::move(connectivity.bytes);
+  walked.order = std::move(connectivity.order);
+
+  CodedSeams seams = encode_seams(walked.points, corners_in_order(mesh, walked.order), n_vertices);
+  walked.seams = std::move(seams.seams);
+  walked.seam_bytes = std::move(seams.bytes);
+  WalkOrder& order = walked.order;
+  order.vertex = std::move(seams.mesh_vertex);
   std::vector<uint8_t> used(n_vertices);
   for (const uint32_t vertex : order.vertex) used[vertex] = 1;
   for (uint32_t v = 0; v < n_vertices; ++v)
     if (used[v] == 0) order.vertex.push_back(v);
+  walked.vertices.reserve(n_vertices);
   for (const uint32_t vertex : order.vertex) walked.vertices.push_back(mesh.vertices[vertex]);
   for (const uint32_t face : order.face) walked.material.push_back(mesh.faces[face].material);
   return walked;
+}
+
+// Of the points, then of the isolated vertices.
+std::vector<Position> positions_of(const Walked& walked) {
+  const uint32_t n_used = walked.seams.n_vertices(), n_points = walked.points.n_vertices;
+  std::vector<Position> positions(n_points + walked.vertices.size() - n_used);
+  for (uint32_t v = 0; v < walked.vertices.size(); ++v)
+    std::copy_n(walked.vertices[v].position, 3,
+                positions[v < n_used ? walked.seams.vertex_point[v] : n_points + v - n_used].begin());
+  return positions;
 }
 
 bool has_constant_color(const QuantizedMesh& mesh) {
@@ -66,45 +122,67 @@ bool has_constant_color(const QuantizedMesh& mesh) {
   });
 }
 
-}  // namespace
-
-Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
-  PAC_CHECK(check(mesh));
-  Walked walked = walk(mesh);
+Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOptions& options) {
   Header header;
   header.keeps_order = options.keep_order;
   header.constant_color = has_constant_color(mesh);
   header.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, header.origin);
   std::copy(mesh.step, mesh.step + 3, header.step);
-  header.n_used_vertices = walked.n_used_vertices;
-  header.n_isolated_vertices = static_cast<uint32_t>(mesh.vertices.size()) - walked.n_used_vertices;
-  header.n_faces = walked.connectivity.topology.n_faces();
-  header.n_corners = walked.connectivity.topology.n_corners();
+  header.normal_bits = mesh.normal_bits;
+  header.texcoord_bits = mesh.texcoord_bits;
+  std::copy(mesh.texcoord_origin, mesh.texcoord_origin + 2, header.texcoord_origin);
+  header.texcoord_step = mesh.texcoord_step;
+  header.n_used_vertices = walked.seams.n_vertices();
+  header.n_split_vertices = header.n_used_vertices - walked.points.n_vertices;
+  header.n_isolated_vertices = static_cast<uint32_t>(mesh.vertices.size()) - header.n_used_vertices;
+  header.n_faces = walked.points.n_faces();
+  header.n_corners = walked.points.n_corners();
   for (const uint32_t material : walked.material) header.highest_material = std::max(header.highest_material, material);
   if (header.constant_color && !mesh.vertices.empty())
     std::copy(mesh.vertices[0].color, mesh.vertices[0].color + 4, header.color);
+  return header;
+}
 
-  CodedAttributes attributes =
-      encode_attributes(walked.connectivity.topology, walked.vertices, mesh.position_bits, header.constant_color);
-  std::array<std::vector<uint8_t>, kSections> sections;
-  sections[kConnectivity] = std::move(walked.connectivity.bytes);
-  sections[kPositions] = std::move(attributes.positions);
-  sections[kColors] = std::move(attributes.colors);
-  sections[kMaterials] = encode_materials(walked.connectivity.topology, walked.material);
-  if (options.keep_order) sections[kOrder] = encode_order(walked.connectivity.topology, walked.connectivity.order);
-  uint64_t section_bytes = 0;
+using Sections = std::array<std::vector<uint8_t>, kSections>;
+
+void encode_attributes(const Header& header, const Walked& walked, Sections& sections) {
+  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return;
+  const Topology topology = cut_at_seams(walked.points, walked.seams);
+  const Stencils stencils(topology);
+  const AttributeMesh mesh{topology, stencils, walked.seams.sibling};
+  if (header.has(kColors)) sections[kColors] = encode_colors(mesh, walked.vertices);
+  if (header.has(kNormals)) sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits);
+  if (header.has(kTexcoords)) sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits);
+}
+
+}  // namespace
+
+Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
+  PAC_CHECK(check(mesh));
+  Walked walked = walk(mesh);
+  const Header header = header_of(mesh, walked, options);
+  Sections sections;
+  sections[kConnectivity] = std::move(walked.connectivity_bytes);
+  sections[kSeams] = std::move(walked.seam_bytes);
+  if (header.has(kPositions))
+    sections[kPositions] = encode_positions(walked.points, positions_of(walked), mesh.position_bits);
+  encode_attributes(header, walked, sections);
+  sections[kMaterials] = encode_materials(walked.points, walked.material);
+  if (header.has(kOrder)) sections[kOrder] = encode_order(walked.points, walked.order);
   for (const std::vector<uint8_t>& section : sections)
-    section_bytes = std::max<uint64_t>(section_bytes, section.size());
-  if (section_bytes > kMaxCount) return Failure{Error::bad_argument, 0, "mesh is too large for one stream"};
+    if (section.size() > kMaxCount) return Failure{Error::bad_argument, 0, "mesh is too large for one stream"};
 
   uint64_t header_bytes = 0;
   std::vector<uint8_t> stream = write_stream(header, sections, header_bytes);
   if (size != nullptr)
     *size = {header_bytes,
              sections[kConnectivity].size(),
+             sections[kSeams].size(),
              sections[kPositions].size(),
              sections[kColors].size(),
+             sections[kNormals].size(),
+             sections[kTexcoords].size(),
              sections[kMaterials].size(),
              sections[kOrder].size()};
   return stream;
@@ -114,14 +192,17 @@ QuantizedMesh reorder(const QuantizedMesh& mesh) {
   QuantizedMesh result;
   if (!check(mesh)) return result;
   Walked walked = walk(mesh);
-  const Topology& topology = walked.connectivity.topology;
   result.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, result.origin);
   std::copy(mesh.step, mesh.step + 3, result.step);
+  result.normal_bits = mesh.normal_bits;
+  result.texcoord_bits = mesh.texcoord_bits;
+  std::copy(mesh.texcoord_origin, mesh.texcoord_origin + 2, result.texcoord_origin);
+  result.texcoord_step = mesh.texcoord_step;
   result.vertices = std::move(walked.vertices);
-  for (uint32_t face = 0; face < topology.n_faces(); ++face)
-    result.faces.push_back({topology.face_first[face], topology.face_size(face), walked.material[face]});
-  result.indices = topology.corner_vertex;
+  for (uint32_t face = 0; face < walked.points.n_faces(); ++face)
+    result.faces.push_back({walked.points.face_first[face], walked.points.face_size(face), walked.material[face]});
+  result.indices = std::move(walked.seams.corner_vertex);
   return result;
 }
 

@@ -13,10 +13,13 @@
 
 namespace pac::geomcodec {
 
-// Three fixed-point coordinates and a color: the paper's 10-byte vertex.
+// Three fixed-point coordinates and a color: the paper's 10-byte vertex; and, where a mesh has them, a normal and a
+// texture coordinate.
 struct QuantizedVertex {
   uint16_t position[3] = {0, 0, 0};
   uint8_t color[4] = {255, 255, 255, 255};  // RGBA
+  uint16_t normal[2] = {0, 0};              // octahedral: 0 .. 2^normal_bits - 2 each; 0 without normals
+  uint16_t texcoord[2] = {0, 0};            // below 2^texcoord_bits; 0 without texture coordinates
   bool operator==(const QuantizedVertex&) const = default;
 };
 
@@ -36,6 +39,10 @@ struct QuantizedMesh {
   int position_bits = 16;  // 1..16
   float origin[3] = {0, 0, 0};
   float step[3] = {1, 1, 1};
+  int normal_bits = 0;    // 2..16; 0: no normals
+  int texcoord_bits = 0;  // 1..16; 0: no texture coordinates
+  float texcoord_origin[2] = {0, 0};
+  float texcoord_step = 1;
 };
 
 // The only lossy step: rounds to the nearest point of a cubic grid (one step for the three axes: the longest side of
@@ -49,7 +56,21 @@ Result<QuantizedMesh> quantize(const Mesh& mesh, int position_bits);
 // positive and finite or an origin not finite.
 Result<QuantizedMesh> quantize(const Mesh& mesh, const Grid& grid);
 
-// Positions back as floats: float(double(origin) + n * double(step)), the same bits on every machine.
+// Positions on the fitted grid, and normals and texture coordinates with the bits given (0: dropped). A normal that is
+// zero becomes (0, 0, 1). Fails also with bad_argument for bits out of range.
+struct AttributeBits {
+  int position = 16;  // 1..16
+  int normal = 0;     // 0, 2..16 per component
+  int texcoord = 0;   // 0, 1..16 along the longer side of their bounding box
+};
+Result<QuantizedMesh> quantize(const Mesh& mesh, const AttributeBits& bits);
+
+// Vertices that are equal in everything become one, the first of them; vertices that no face uses go. Faces keep their
+// order and corners.
+QuantizedMesh merge_equal_vertices(const QuantizedMesh& mesh);
+
+// Positions back as floats: float(double(origin) + n * double(step)), the same bits on every machine; normals and
+// texture coordinates if there are any.
 Mesh dequantize(const QuantizedMesh& mesh);
 
 struct EncodeOptions {
@@ -58,10 +79,13 @@ struct EncodeOptions {
 
 // What each part of an encoded mesh costs. They add up to the size of the stream.
 struct EncodedSize {
-  uint64_t header_bytes = 0, connectivity_bytes = 0, position_bytes = 0, color_bytes = 0, material_bytes = 0;
+  uint64_t header_bytes = 0, connectivity_bytes = 0;
+  uint64_t seam_bytes = 0;  // which corners at a position share a vertex
+  uint64_t position_bytes = 0, color_bytes = 0, normal_bytes = 0, texcoord_bytes = 0, material_bytes = 0;
   uint64_t order_bytes = 0;  // the permutations that keep_order adds
   uint64_t total_bytes() const {
-    return header_bytes + connectivity_bytes + position_bytes + color_bytes + material_bytes + order_bytes;
+    return header_bytes + connectivity_bytes + seam_bytes + position_bytes + color_bytes + normal_bytes +
+           texcoord_bytes + material_bytes + order_bytes;
   }
 };
 
@@ -70,8 +94,9 @@ inline double levoy95_estimated_bytes(uint64_t n_polygons) {
   return static_cast<double>(n_polygons) * 10.0 / 3.0;
 }
 
-// Fails with bad_argument: position_bits, a coordinate above the grid, a face that base/mesh.h's validate() refuses,
-// more than 2^31 - 1 vertices, faces or corners.
+// Positions that several vertices share are coded once. Fails with bad_argument: bits out of range, a coordinate above
+// its grid, an attribute that the mesh says it has not, a face that base/mesh.h's
+// validate() refuses, more than 2^31 - 1 vertices, faces or corners.
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options = {},
                                     EncodedSize* size = nullptr);
 
@@ -94,7 +119,9 @@ struct StreamInfo {
   int position_bits = 0;
   float origin[3] = {0, 0, 0};
   float step[3] = {1, 1, 1};
-  bool constant_color = false;  // all vertices share one color
+  int normal_bits = 0, texcoord_bits = 0;  // 0: none
+  uint32_t n_points = 0;                   // distinct positions of the vertices that faces use
+  bool constant_color = false;             // all vertices share one color
   bool keeps_order = false;
   EncodedSize size;
 };

@@ -48,8 +48,11 @@ inline uint32_t mixed_probability(const AdaptiveBit& first, const AdaptiveBit& s
   const uint32_t p = first.probability_of_one, q = second.probability_of_one;
   const uint32_t weight_p = (q < 32768 ? q : 65536 - q) + kSoftening;
   const uint32_t weight_q = (p < 32768 ? p : 65536 - p) + kSoftening;
-  return static_cast<uint32_t>((uint64_t{p} * weight_p + uint64_t{q} * weight_q) / (weight_p + weight_q));
+  // Below 2^32: where p > 2^15, weight_q falls as p rises.
+  return (p * weight_p + q * weight_q) / (weight_p + weight_q);
 }
+
+inline constexpr int kSymbolBits = 20;  // probabilities of symbols are in 2^-20
 
 class RangeEncoder {
  public:
@@ -73,6 +76,13 @@ class RangeEncoder {
     add(range_ * value);
     normalize();
     return value;
+  }
+  // One of several symbols: it owns [start, start + size) of 0 .. 2^kSymbolBits - 1; size > 0.
+  void symbol(uint32_t start, uint32_t size) {
+    range_ >>= kSymbolBits;
+    add(range_ * start);
+    range_ *= size;
+    normalize();
   }
   bool failed() const { return false; }
   uint64_t bytes_so_far() const { return bytes_.size(); }
@@ -100,8 +110,9 @@ class RangeEncoder {
   void carry();
   void emit_word();
 
-  // The interval is [low_, low_ + range_), range_ >= 2^32 between calls; with 16-bit probabilities of at least 32 and
-  // raw() of at most 16 bits it never falls below 2^16 before normalize(), which multiplies it by 2^32.
+  // The interval is [low_, low_ + range_), range_ >= 2^32 between calls; with 16-bit probabilities of at least 32,
+  // raw() of at most 16 bits and symbols of at least 2^6 it never falls below 2^16 before normalize(), which multiplies
+  // by 2^32.
   uint64_t low_ = 0, range_ = ~uint64_t{0};
   std::vector<uint8_t> bytes_;
 };
@@ -133,6 +144,18 @@ class RangeDecoder {
     code_ -= value * range_;
     normalize();
     return static_cast<uint32_t>(value);
+  }
+  // Where in 0 .. 2^kSymbolBits - 1 the next symbol lies; symbol() with what this symbol owns must follow.
+  uint32_t symbol_position() {
+    range_ >>= kSymbolBits;
+    constexpr uint64_t kLimit = (uint64_t{1} << kSymbolBits) - 1;
+    const uint64_t position = code_ / range_;
+    return static_cast<uint32_t>(position < kLimit ? position : kLimit);
+  }
+  void symbol(uint32_t start, uint32_t size) {
+    code_ -= range_ * start;
+    range_ *= size;
+    normalize();
   }
   // More than the 8 bytes that an encoder may leave out were read past the end.
   bool failed() const { return position_ > bytes_.size() + 8; }

@@ -11,32 +11,69 @@ Stencils::Stencils(const Topology& topology) : topology_(topology), first_(size_
     around_[end[topology.corner_vertex[corner]]++] = corner;
 }
 
-Stencil Stencils::at(uint32_t vertex) const {
-  Stencil stencil;
+void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
+  stencil.clear();
+  if (vertex >= topology_.n_vertices) return;
   const uint32_t begin = first_[vertex], end = first_[vertex + 1];
-  for (uint32_t i = begin; i < end && stencil.n_neighbors < Stencil::kMax; ++i) add_corner(vertex, around_[i], stencil);
-  if (stencil.n_parallelograms == 0)
-    for (uint32_t i = begin; i < end && i < begin + Stencil::kMax; ++i) add_extension(vertex, around_[i], stencil);
-  return stencil;
+  stencil.n_corners = static_cast<int>(end - begin < Stencil::kMax ? end - begin : Stencil::kMax);
+  for (uint32_t i = begin; i < end && stencil.n_neighbors < Stencil::kMax; ++i)
+    add_corner(vertex, around_[i], with_twists, stencil);
+  if (stencil.n_parallelograms > 0) return;
+  for (uint32_t i = begin; i < end && i < begin + Stencil::kMax; ++i) add_extension(vertex, around_[i], stencil);
+  stencil.extended = stencil.n_parallelograms > 0;
 }
 
 // What the face of one corner at `vertex` offers.
-void Stencils::add_corner(uint32_t vertex, uint32_t corner, Stencil& stencil) const {
+void Stencils::add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {
   const uint32_t next = topology_.next(corner), previous = topology_.previous(corner);
   const uint32_t a = topology_.corner_vertex[next], b = topology_.corner_vertex[previous];
   if (a < vertex) stencil.add_neighbor(a);
   if (b < vertex) stencil.add_neighbor(b);
   if (a >= vertex || b >= vertex) return;
-  const uint32_t size = topology_.face_size(topology_.corner_face[corner]);
+  const uint32_t size = topology_.size_of_face_at(corner);
   if (size == 3) {
     const uint32_t across = topology_.twin[next];
     if (across == kNone) return;
     const uint32_t opposite = topology_.corner_vertex[topology_.previous(across)];
-    if (opposite < vertex) stencil.add(a, b, opposite);
+    if (opposite >= vertex) return;
+    stencil.add(a, b, opposite);
+    if (!with_twists || topology_.size_of_face_at(across) != 3) return;
+    // The triangles beyond the other two edges of the one across: how far their tips are from parallelograms.
+    const uint32_t left = tip_across(vertex, topology_.next(across));
+    const uint32_t right = tip_across(vertex, topology_.previous(across));
+    if (left != kNone && right != kNone) stencil.add_twist(left, right, opposite, opposite);
   } else {
-    const uint32_t opposite = topology_.corner_vertex[topology_.next(next)];
-    if (opposite < vertex) stencil.add(a, b, opposite);
+    const uint32_t edge = topology_.next(next);
+    const uint32_t opposite = topology_.corner_vertex[edge];
+    if (opposite >= vertex) return;
+    stencil.add(a, b, opposite);
+    if (!with_twists || size != 4) return;
+    add_quad_twist(vertex, next, false, stencil);
+    add_quad_twist(vertex, edge, true, stencil);
   }
+}
+
+// The tip of the triangle across an edge, if it is known; else kNone.
+uint32_t Stencils::tip_across(uint32_t vertex, uint32_t edge) const {
+  const uint32_t across = topology_.twin[edge];
+  if (across == kNone || topology_.size_of_face_at(across) != 3) return kNone;
+  const uint32_t tip = topology_.corner_vertex[topology_.previous(across)];
+  return tip < vertex ? tip : kNone;
+}
+
+// The quad across an edge from -> to of the quad that holds `vertex`, one of the ends being the corner opposite to
+// `vertex`; entering: `from` is. Its alternating sum, signed as the vertex's own quad has it.
+void Stencils::add_quad_twist(uint32_t vertex, uint32_t edge, bool entering, Stencil& stencil) const {
+  const uint32_t across = topology_.twin[edge];
+  if (across == kNone || topology_.size_of_face_at(across) != 4) return;
+  const uint32_t near_from = topology_.corner_vertex[edge], near_to = topology_.corner_vertex[across];
+  const uint32_t beyond_from = topology_.corner_vertex[topology_.next(topology_.next(across))];
+  const uint32_t beyond_to = topology_.corner_vertex[topology_.previous(across)];
+  if (beyond_from >= vertex || beyond_to >= vertex) return;
+  if (entering)
+    stencil.add_twist(near_to, beyond_from, near_from, beyond_to);
+  else
+    stencil.add_twist(near_from, beyond_to, near_to, beyond_from);
 }
 
 // Where no parallelogram is: a polygon's side continues the side of the polygon it grew from, v = a + (a - behind a).

@@ -113,9 +113,10 @@ TEST_CASE("damaged streams whose checksum was repaired decode to a sound mesh or
   REQUIRE(n_decoded > 0);
 }
 
-// A header from parts, with no sections: 1 = one byte, 5 = a varint of 5 bytes.
+// A header from parts, with no sections: used, split, isolated, faces, extra corners, highest material, then the sizes
+// of the sections that these leave.
 Bytes header(uint8_t flags, uint8_t bits, std::initializer_list<uint64_t> numbers) {
-  Bytes bytes = {'P', 'G', 'C', 1, flags, bits};
+  Bytes bytes = {'P', 'G', 'C', 2, flags, bits};
   for (uint64_t number : numbers) {
     for (; number >= 0x80; number >>= 7) bytes.push_back(static_cast<uint8_t>(number | 0x80));
     bytes.push_back(static_cast<uint8_t>(number));
@@ -132,50 +133,52 @@ TEST_CASE("each header field at its limit and one past it") {
     Error error;
     const char* message;
   };
-  Bytes magic = header(4, 16, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), version = magic, checksum = magic, padded = magic;
+  Bytes magic = header(4, 16, {0, 0, 0, 0, 0, 0}), version = magic, checksum = magic, padded = magic;
   REQUIRE(decode(magic).ok());
   magic[1] = 'g';
-  version[3] = 2;
+  version[3] = 1;
   checksum.back() = static_cast<uint8_t>(checksum.back() + 1);
   padded[6] = 0x80;  // the number 0 in two bytes
+  Bytes normals = header(4 + 16, 16, {2, 0, 0, 0, 0, 0, 0}), texture = header(4 + 32, 16, {1, 0, 0, 0, 0, 0, 0, 0x80});
+  REQUIRE(decode(normals).ok());
+  normals[6] = 17;
+  texture[6] = 0;
   const uint64_t top = 0x7FFFFFFF;
   const Case cases[] = {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
-      {"flags", header(16 + 4, 16, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Error::unsupported,
-       "stream uses features that are unknown"},
-      {"two grids", header(12, 16, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, "flags contradict one another"},
-      {"bits 0", header(4, 0, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},
-      {"bits 17", header(4, 17, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},
+      {"flags", header(64 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::unsupported, "stream uses features that are unknown"},
+      {"two grids", header(12, 16, {0, 0, 0, 0, 0, 0}), Error::corrupt, "flags contradict one another"},
+      {"bits 0", header(4, 0, {0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},
+      {"bits 17", header(4, 17, {0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},
+      {"normal bits 17", normals, Error::corrupt, "normal bits are not in 2..16"},
+      {"texture bits 0", texture, Error::corrupt, "texture coordinate bits are not in 1..16"},
       {"checksum", checksum, Error::corrupt, "checksum does not match"},
       {"long number", padded, Error::corrupt, "malformed number in the header"},
-      {"number of 36 bits", header(4, 16, {uint64_t{1} << 35, 0, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"number of 36 bits", header(4, 16, {uint64_t{1} << 35, 0, 0, 0, 0, 0}), Error::corrupt,
        "malformed number in the header"},
-      {"2^31 - 1 vertices", header(4, 16, {0, top, 0, 0, 0, 0, 0, 0, 0, 0}), Error::limit_exceeded,
+      {"2^31 - 1 vertices", header(4, 16, {0, 0, top, 0, 0, 0, 0, 0}), Error::limit_exceeded,
        "decoded mesh is larger than the limit"},
-      {"2^31 vertices", header(4, 16, {0, top + 1, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
-       "count in the header is too large"},
-      {"sum of vertices", header(4, 16, {3, top, 1, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"2^31 vertices", header(4, 16, {0, 0, top + 1, 0, 0, 0}), Error::corrupt, "count in the header is too large"},
+      {"sum of vertices", header(4, 16, {3, 0, top, 1, 0, 0}), Error::corrupt,
        "counts in the header contradict one another"},
-      {"more used vertices than corners", header(4, 16, {4, 0, 1, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"more used vertices than corners", header(4, 16, {4, 0, 0, 1, 0, 0}), Error::corrupt,
        "counts in the header contradict one another"},
-      {"faces without vertices", header(4, 16, {0, 0, 1, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"all vertices split", header(4, 16, {3, 3, 0, 1, 0, 0}), Error::corrupt,
        "counts in the header contradict one another"},
-      {"corners without faces", header(4, 16, {0, 0, 0, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"faces without vertices", header(4, 16, {0, 0, 0, 1, 0, 0}), Error::corrupt,
        "counts in the header contradict one another"},
-      {"corners past 2^31", header(4, 16, {3, 0, top / 3, 5, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+      {"corners without faces", header(4, 16, {0, 0, 0, 0, 1, 0}), Error::corrupt,
        "counts in the header contradict one another"},
-      {"2^26 + 1 triangles", header(4, 16, {3, 0, (1 << 26) + 1, 0, 0, 0, 0, 0, 0, 0}), Error::limit_exceeded,
+      {"corners past 2^31", header(4, 16, {3, 0, 0, top / 3, 5, 0}), Error::corrupt,
+       "counts in the header contradict one another"},
+      {"2^26 + 1 triangles", header(4, 16, {3, 0, 0, (1 << 26) + 1, 0, 0, 0, 0, 0}), Error::limit_exceeded,
        "mesh has more triangles than the limit"},
-      {"2^31 - 1 section bytes", header(4, 16, {0, 0, 0, 0, 0, top, 0, 0, 0, 0}), Error::truncated,
-       "stream ends too early"},
-      {"order without its flag", header(4, 16, {0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), Error::corrupt,
-       "section that the flags exclude"},
-      {"materials without any", header(4, 16, {0, 0, 0, 0, 0, 0, 0, 0, 1, 0}), Error::corrupt,
-       "section that the flags exclude"},
-      {"a face that is not there", header(4, 16, {3, 0, 1, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, ""},
-      {"a million faces in no bytes", header(4, 16, {3, 0, 1000000, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, ""},
-      {"a million vertices in no bytes", header(4, 16, {0, 1000000, 0, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt, ""},
+      {"2^31 - 1 section bytes", header(4, 16, {0, 0, 1, 0, 0, 0, top, 0}), Error::truncated, "stream ends too early"},
+      {"a face that is not there", header(4, 16, {3, 0, 0, 1, 1, 0, 0, 0, 0}), Error::corrupt, ""},
+      {"seams that are not there", header(4, 16, {3, 2, 0, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt, ""},
+      {"a million faces in no bytes", header(4, 16, {3, 0, 0, 1000000, 0, 0, 0, 0, 0}), Error::corrupt, ""},
+      {"a million vertices in no bytes", header(4, 16, {0, 0, 1000000, 0, 0, 0, 0, 0}), Error::corrupt, ""},
   };
   for (const Case& bad : cases) {
     CAPTURE(bad.what);
@@ -228,6 +231,23 @@ TEST_CASE("encode refuses what is no mesh") {
   mesh = good;
   mesh.origin[2] = std::numeric_limits<float>::quiet_NaN();
   REQUIRE(refused(mesh));
+  mesh = good;
+  mesh.normal_bits = 1;
+  REQUIRE(refused(mesh));
+  mesh = good;
+  mesh.vertices[1].normal[0] = 1;  // a normal where the mesh has none
+  REQUIRE(refused(mesh));
+  mesh = good;
+  mesh.normal_bits = 8;
+  mesh.vertices[1].normal[0] = 255;
+  REQUIRE(refused(mesh));
+  mesh = good;
+  mesh.texcoord_bits = 4;
+  mesh.vertices[1].texcoord[1] = 16;
+  REQUIRE(refused(mesh));
+  mesh = good;
+  mesh.texcoord_step = -1;
+  REQUIRE(refused(mesh));
   mesh = good;  // faces may share corners and leave gaps: they come back packed
   mesh.faces[1] = mesh.faces[0];
   REQUIRE(pac::test::same(decode(encode(mesh, {.keep_order = true}).value()).value(), pac::test::packed(mesh)));
@@ -259,6 +279,46 @@ TEST_CASE("quantize rounds to the nearest grid point, halves upwards, and clamps
   REQUIRE(quantize({}, 17).failure().error == Error::bad_argument);
   grid.step[0] = -1;
   REQUIRE(quantize({}, grid).failure().error == Error::bad_argument);
+}
+
+TEST_CASE("quantized normals stay within 0.3 degrees at 10 bits, texture coordinates within half a step") {
+  pac::Mesh mesh;
+  for (int i = 0; i < 400; ++i) {
+    pac::Vertex vertex;
+    const double z = (i % 20) / 9.5 - 1, r = std::sqrt(std::max(0.0, 1 - z * z));
+    vertex.normal[0] = static_cast<float>(r * std::cos(i * 0.7));
+    vertex.normal[1] = static_cast<float>(r * std::sin(i * 0.7));
+    vertex.normal[2] = static_cast<float>(z);
+    vertex.texcoord[0] = static_cast<float>(i) * 0.013f - 2;
+    vertex.texcoord[1] = static_cast<float>(i % 7) * 0.3f;
+    mesh.vertices.push_back(vertex);
+  }
+  const QuantizedMesh quantized = quantize(mesh, pac::geomcodec::AttributeBits{14, 10, 12}).value();
+  const pac::Mesh back = pac::geomcodec::dequantize(quantized);
+  for (size_t v = 0; v < mesh.vertices.size(); ++v) {
+    double dot = 0;
+    for (int i = 0; i < 3; ++i) dot += double{mesh.vertices[v].normal[i]} * back.vertices[v].normal[i];
+    REQUIRE(dot > std::cos(0.3 * 3.14159265 / 180));
+    for (int i = 0; i < 2; ++i)
+      REQUIRE(std::fabs(mesh.vertices[v].texcoord[i] - back.vertices[v].texcoord[i]) <=
+              0.51f * quantized.texcoord_step);
+  }
+  REQUIRE(pac::test::same(decode(encode(quantized, {.keep_order = true}).value()).value(), quantized));
+  REQUIRE(!quantize(mesh, pac::geomcodec::AttributeBits{14, 1, 0}).ok());
+  REQUIRE(!quantize(mesh, pac::geomcodec::AttributeBits{14, 0, 17}).ok());
+  mesh.vertices[3].texcoord[1] = std::numeric_limits<float>::infinity();
+  REQUIRE(quantize(mesh, pac::geomcodec::AttributeBits{14, 0, 12}).failure().byte_offset == 3);
+}
+
+TEST_CASE("merging equal vertices keeps every face and loses only copies and vertices without faces") {
+  for (const NamedMesh& entry : mesh_zoo()) {
+    CAPTURE(entry.name);
+    const QuantizedMesh merged = pac::geomcodec::merge_equal_vertices(entry.mesh);
+    REQUIRE(merged.indices.size() == entry.mesh.indices.size());
+    REQUIRE(merged.vertices.size() <= entry.mesh.vertices.size());
+    for (size_t i = 0; i < merged.indices.size(); ++i)
+      REQUIRE(merged.vertices[merged.indices[i]] == entry.mesh.vertices[entry.mesh.indices[i]]);
+  }
 }
 
 TEST_CASE("the fitted grid keeps every position within half a step, with no extent on any number of axes") {

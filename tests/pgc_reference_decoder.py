@@ -3,6 +3,7 @@
 
 usage: pgc_reference_decoder.py FILE.pgc...   prints, per file: vertices, faces, FNV-1a hash of everything decoded
 """
+import math
 import struct
 import sys
 import zlib
@@ -26,6 +27,28 @@ class Bit:  # section 3
     def learn(self, bit):
         self.p += (((65504 if bit else 32) - self.p) * STEP[self.n]) >> 16
         self.n = min(self.n + 1, 23)
+
+
+WEIGHT = [1024, 920, 640, 380, 210, 115, 62, 33, 18, 10, 6, 4]
+
+
+class Symbols:  # section 3
+    def __init__(self, used=16, halves=None):
+        self.start = [2 * i + 32736 * min(i, used) // used for i in range(17)]
+        self.seen = 0
+        if halves is not None:
+            sums = [0]
+            for c in range(16):
+                sums.append(sums[-1] + WEIGHT[min(11, abs(2 * c - halves))])
+            self.start = [2 * i + 32736 * sums[i] // sums[16] for i in range(17)]
+            self.seen = 3
+
+    def learn(self, symbol, slowest):
+        step = min(32767, 655360 // (10 * self.seen + 16))
+        for i in range(16):
+            target = 2 * i if i <= symbol else 32768 - 2 * (16 - i)
+            self.start[i] += (target - self.start[i]) * step >> 16
+        self.seen = min(self.seen + 1, slowest)
 
 
 class Models(dict):
@@ -111,13 +134,44 @@ class Decoder:
         length = min(32, self.tree(key + ("length",), 6))
         return self.mantissa(key + ("mantissa",), length)
 
-    def residual(self, axis, basis, scale, other, sign_context):
-        c = min(17, self.mixed_tree((axis, "scale", basis, scale), (axis, "other", basis, other), 5))
-        if c == 0:
+    def symbol(self, keys, used=16):
+        models = []
+        for key in keys:
+            if key not in self.models:
+                self.models[key] = Symbols(used)
+            models.append(self.models[key])
+        if len(models) == 1:
+            start = [32 * x for x in models[0].start]
+        else:
+            a, b = (min(m.seen, 31) + 1 for m in models)
+            w = max(1, min(31, (32 * a + (a + b) // 2) // (a + b)))
+            start = [x * w + y * (32 - w) for x, y in zip(models[0].start, models[1].start)]
+        self.range >>= 20
+        position = min(self.code // self.range, (1 << 20) - 1)
+        symbol = max(i for i in range(16) if start[i] <= position)
+        self.code -= self.range * start[symbol]
+        self.range *= start[symbol + 1] - start[symbol]
+        self.normalize()
+        for m, slowest in zip(models, (128, 18) if len(models) == 2 else (64,)):
+            m.learn(symbol, slowest)
+        return symbol
+
+    def residual(self, one, two, details):  # the contexts' last parts: a class in halves, a class
+        for key, halves in ((one, one[-1]), (two, 2 * two[-1])):
+            if key not in self.models:
+                self.models[key] = Symbols(halves=halves)
+        length = self.symbol([one, two])
+        if length == 0:
             return 0
-        negative = self.bit((axis, "sign", basis, sign_context))
-        x = self.mantissa((axis, "mantissa"), c)
-        return -x if negative else x
+        if length == 15:
+            length += self.raw(1)
+        modeled = min(length - 1, 3)
+        detail = self.symbol([details + (length,)], 2 << modeled) & ((2 << modeled) - 1)
+        x = 1 << modeled | detail & ((1 << modeled) - 1)
+        left = length - 1 - modeled
+        if left:
+            x = x << left | self.raw(left)
+        return -x if detail >> modeled else x
 
     def finish(self):
         assert len(self.data) <= self.at <= len(self.data) + 8
@@ -125,20 +179,29 @@ class Decoder:
 
 class Header:  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] == 1
+        assert b[:3] == b"PGC" and b[3] == 2
         self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
         if not self.flags & 4:
             self.origin = self.floats(3)
             self.step = self.floats(1) * 3 if self.flags & 8 else self.floats(3)
-        self.used, self.isolated, self.faces = self.varint(), self.varint(), self.varint()
-        self.corners = self.varint() + 3 * self.faces
+        self.normal_bits = self.byte() if self.flags & 16 else 0
+        self.texcoord_bits = self.byte() if self.flags & 32 else 0
+        if self.texcoord_bits:
+            self.floats(3)
+        self.used, self.split, self.isolated, self.faces = (self.varint() for _ in range(4))
+        self.points, self.vertices = self.used - self.split, self.used + self.isolated
+        extra = self.varint()
+        self.corners, self.triangles = extra + 3 * self.faces, extra == 0
         self.highest = self.varint()
         self.color = None
         if self.flags & 2:
             self.color = list(b[self.at : self.at + 4])
             self.at += 4
-        sizes = [self.varint() for _ in range(5)]
+        some = self.vertices > 0
+        present = [self.faces > 0, self.split > 0, some, some and not self.color, some and self.normal_bits > 0,
+                   some and self.texcoord_bits > 0, self.highest > 0, some and self.flags & 1 > 0]
+        sizes = [self.varint() if x else 0 for x in present]
         crc = struct.unpack_from("<I", b, self.at)[0]
         assert zlib.crc32(b[: self.at] + b[self.at + 4 :]) == crc
         self.at += 4
@@ -147,6 +210,10 @@ class Header:  # section 2
             self.sections.append(b[self.at : self.at + size])
             self.at += size
         assert self.at == len(b)
+
+    def byte(self):
+        self.at += 1
+        return self.b[self.at - 1]
 
     def floats(self, n):
         self.at += 4 * n
@@ -175,13 +242,14 @@ class Connectivity:  # section 4
             gate = self.gate()
             if gate is None:
                 corners = []
-                for _ in range(3 + self.d.number("size", 3)):
+                for _ in range(3 if header.triangles else 3 + self.d.number("size", 3)):
                     corners.append(self.corner("seed", corners))
                 self.finish(corners, None)
             elif self.across(gate):
                 self.face(gate)
-        assert self.n_vertices == header.used and len(self.vertex) == header.corners
-        self.d.finish()
+        assert self.n_vertices == header.points and len(self.vertex) == header.corners
+        if header.faces:
+            self.d.finish()
 
     def degree(self, v):
         return min(9, self.degrees.get(v, 0))
@@ -224,7 +292,11 @@ class Connectivity:  # section 4
 
     def face(self, gate):
         gate_size = self.faces[self.face_of[gate]][1]
-        size = 3 + self.d.number("size", 0 if gate_size == 3 else 1 if gate_size == 4 else 2)
+        context = 0 if gate_size == 3 else 1 if gate_size == 4 else 2
+        size = 3
+        if not self.h.triangles:
+            same = self.d.bit(("same size", context))
+            size = gate_size if same else 3 + self.d.number("size", context)
         corners = [self.end(gate), self.vertex[gate]]
         for k in range(2, size):
             place = "only" if size == 3 else "first" if k == 2 else "middle" if k + 1 < size else "last"
@@ -251,7 +323,7 @@ class Connectivity:  # section 4
     def answer(self, candidates, one, two):
         if self.n_vertices == 0:
             return 0
-        if self.n_vertices < self.h.used and self.d.mixed(one + (0,), two + (0,)):
+        if self.n_vertices < self.h.points and self.d.mixed(one + (0,), two + (0,)):
             return 0
         for i, candidate in enumerate(candidates):
             if candidate is None or candidate in candidates[:i]:
@@ -296,121 +368,479 @@ class Connectivity:  # section 4
             self.queue.append(a)
 
 
-class Attributes:  # sections 5 and 6
+class Seams:  # section 5
     def __init__(self, header, mesh):
-        self.h, self.mesh = header, mesh
-        self.positions, self.colors = Decoder(header.sections[1]), Decoder(header.sections[2])
-        self.around = [[] for _ in range(header.used)]
-        for corner, vertex in enumerate(mesh.vertex):
-            self.around[vertex].append(corner)
-        self.vertices, self.classes, self.green_classes = [], [], []
-        self.variance, self.covariance = 1024, {0: 1024, 2: 1024}
-        for v in range(header.used + header.isolated):
-            self.stencil(v)
-            self.vertices.append(([0] * 3, header.color or [0] * 4))
-            self.position(v)
-            if not header.color:
-                self.color(v)
-        self.positions.finish()
-        if not header.color:
-            self.colors.finish()
+        self.mesh, self.h = mesh, header
+        self.corner_vertex, self.point, self.sibling, self.newest, self.last = [], [], [], {}, 0
+        if header.split == 0:
+            self.corner_vertex, self.point = list(mesh.vertex), list(range(header.used))
+            self.sibling = [None] * header.used
+            return
+        self.d = Decoder(header.sections[1])
+        for corner, point in enumerate(mesh.vertex):
+            self.corner_vertex.append(self.choose(corner, point) if point in self.newest else self.add(point))
+        assert len(self.point) == header.used
+        self.d.finish()
 
-    def stencil(self, v):
-        mesh, self.neighbors, self.parallelograms = self.mesh, [], []
-        corners = self.around[v] if v < self.h.used else []
+    def add(self, point):
+        self.point.append(point)
+        self.sibling.append(self.newest.get(point))
+        self.newest[point] = len(self.point) - 1
+        return self.newest[point]
+
+    def far(self, one, other, corner):
+        if one >= corner or other >= corner:
+            return 0
+        return 1 if self.corner_vertex[one] == self.corner_vertex[other] else 2
+
+    def choose(self, corner, point):
+        mesh, entering, leaving, far_e, far_l = self.mesh, None, None, 0, 0
+        edge = mesh.previous[corner]
+        twin = mesh.twin[edge]
+        if twin is not None and twin < corner:
+            entering, far_e = self.corner_vertex[twin], self.far(edge, mesh.next[twin], corner)
+        twin = mesh.twin[corner]
+        if twin is not None and mesh.next[twin] < corner:
+            leaving, far_l = self.corner_vertex[mesh.next[twin]], self.far(mesh.next[corner], twin, corner)
+        relation = 0 if leaving is None else 1 if leaving == entering else 2
+        asked = 0
+        if entering is not None:
+            asked += 1
+            if self.d.mixed(("e1", far_e, far_l, relation), ("e2", far_e, self.last, relation == 2)):
+                self.last = 0
+                return entering
+        if relation == 2:
+            asked += 1
+            if self.d.mixed(("l1", far_l, far_e), ("l2", far_l, self.last)):
+                self.last = 0
+                return leaving
+        if len(self.point) < self.h.used and self.d.mixed(("n1", asked, far_e, far_l), ("n2", asked, self.last)):
+            self.last = 1
+            return self.add(point)
+        self.last = 2
+        vertex = len(self.point) - 1 - self.d.number("age")
+        assert vertex >= 0 and self.point[vertex] == point
+        return vertex
+
+
+RECIPROCAL = [0, 65536, 32768, 21845, 16384, 13107, 10923, 9362, 8192, 7282, 6554, 5958, 5461]
+
+
+def mean(total, count, bits=0):  # section 6
+    return total * RECIPROCAL[count] + (1 << (15 - bits)) >> (16 - bits)
+
+
+class Stencil:  # section 6; vertex: per corner; vertices below v are known
+    def __init__(self, mesh, vertex, twin, corners, v):
+        self.neighbors, self.parallelograms, self.twists, self.extended = [], [], [], False
+        self.corners = min(12, len(corners))
+        size = lambda c: mesh.faces[mesh.face_of[c]][1]
+        nxt, prv = mesh.next, mesh.previous
+
+        def tip(edge):
+            t = twin[edge]
+            if t is None or size(t) != 3 or vertex[prv[t]] >= v:
+                return None
+            return vertex[prv[t]]
+
+        def quad(edge, entering):
+            t = twin[edge]
+            if t is None or size(t) != 4:
+                return
+            f, g, p, q = vertex[edge], vertex[t], vertex[nxt[nxt[t]]], vertex[prv[t]]
+            if p < v and q < v:
+                self.twists.append((g, p, f, q) if entering else (f, q, g, p))
+
         for c in corners:
             if len(self.neighbors) >= 12:
                 break
-            a, b = mesh.vertex[mesh.next[c]], mesh.vertex[mesh.previous[c]]
+            a, b = vertex[nxt[c]], vertex[prv[c]]
             self.neighbors = (self.neighbors + [x for x in (a, b) if x < v])[:12]
             if a >= v or b >= v:
                 continue
-            if mesh.faces[mesh.face_of[c]][1] == 3:
-                twin = mesh.twin[mesh.next[c]]
-                d = v if twin is None else mesh.vertex[mesh.previous[twin]]
-            else:
-                d = mesh.vertex[mesh.next[mesh.next[c]]]
-            if d < v:
+            if size(c) == 3:
+                t = twin[nxt[c]]
+                if t is None or vertex[prv[t]] >= v:
+                    continue
+                d = vertex[prv[t]]
                 self.parallelograms.append((a, b, d))
+                if size(t) != 3:
+                    continue
+                left, right = tip(nxt[t]), tip(prv[t])
+                if left is not None and right is not None:
+                    self.twists.append((left, right, d, d))
+            else:
+                d = vertex[nxt[nxt[c]]]
+                if d >= v:
+                    continue
+                self.parallelograms.append((a, b, d))
+                if size(c) == 4:
+                    quad(nxt[c], False)
+                    quad(nxt[nxt[c]], True)
         if not self.parallelograms:
             for c in corners[:12]:
-                a, b = mesh.vertex[mesh.next[c]], mesh.vertex[mesh.previous[c]]
-                twin = mesh.twin[mesh.next[c]]
-                if a < v and twin is not None and mesh.vertex[mesh.next[mesh.next[twin]]] < v:
-                    self.parallelograms.append((a, a, mesh.vertex[mesh.next[mesh.next[twin]]]))
-                twin = mesh.twin[mesh.previous[mesh.previous[c]]]
-                if b < v and twin is not None and mesh.vertex[mesh.previous[twin]] < v:
-                    self.parallelograms.append((b, b, mesh.vertex[mesh.previous[twin]]))
-        self.parallelograms = self.parallelograms[:12]
+                a, b = vertex[nxt[c]], vertex[prv[c]]
+                t = twin[nxt[c]]
+                if a < v and t is not None and vertex[nxt[nxt[t]]] < v:
+                    self.parallelograms.append((a, a, vertex[nxt[nxt[t]]]))
+                t = twin[prv[prv[c]]]
+                if b < v and t is not None and vertex[prv[t]] < v:
+                    self.parallelograms.append((b, b, vertex[prv[t]]))
+            self.extended = bool(self.parallelograms)
+        self.parallelograms, self.twists = self.parallelograms[:12], self.twists[:12]
         n = len(self.parallelograms)
-        self.basis = 3 if n > 1 else 2 if n == 1 else 1 if self.neighbors else 0
+        self.basis = 2 if self.extended else 2 + min(n, 3) if n else 1 if self.neighbors else 0
 
-    def neighbor_mean(self, value, factor=1):
-        return rnd(factor * sum(value(x) for x in self.neighbors), len(self.neighbors))
+    def parallelogram_sum(self, at):
+        return sum(at(a) + at(b) - at(d) for a, b, d in self.parallelograms)
 
-    def parallelogram_mean(self, value, factor=1):
-        total = sum(value(a) + value(b) - value(d) for a, b, d in self.parallelograms)
-        return rnd(factor * total, len(self.parallelograms))
+    def scale(self, v, at):
+        if self.neighbors:
+            return mean(sum(at(x) for x in self.neighbors), len(self.neighbors), 1)
+        return 2 * at(v - 1) if v else 0
 
-    def scale(self, v, value):
-        return self.neighbor_mean(value) if self.neighbors else value(v - 1) if v else 0
 
-    def position(self, v):
-        self.classes.append([0] * 3)
-        highest, other = (1 << self.h.bits) - 1, 0
-        for axis in range(3):
-            value = lambda x: self.vertices[x][0][axis]
-            if self.parallelograms:
-                prediction = self.parallelogram_mean(value)
-            elif self.neighbors:
-                prediction = self.neighbor_mean(value)
+class Positions:  # section 6
+    def __init__(self, header, mesh):
+        self.h, self.mesh, self.d = header, mesh, Decoder(header.sections[2])
+        self.mask, self.half = (1 << header.bits) - 1, 1 << header.bits - 1
+        self.read_weights()
+        self.around = [[] for _ in range(header.points)]
+        for corner, vertex in enumerate(mesh.vertex):
+            self.around[vertex].append(corner)
+        self.find_parts()
+        self.at, self.classes, self.error, self.last_choice = [], [], [[0, 0], [0, 0]], 0
+        for v in range(header.points + header.isolated):
+            self.at.append([0] * 3)
+            self.classes.append([0] * 3)
+            if self.raw:
+                self.at[v] = [self.d.raw(header.bits) for _ in range(3)]
             else:
-                prediction = value(v - 1) if v else 0
-            prediction = max(0, min(highest, prediction))
-            scale = self.scale(v, lambda x: self.classes[x][axis])
-            residual = self.positions.residual(axis, self.basis, scale, other, 0)
-            assert 0 <= prediction + residual <= highest
-            self.vertices[v][0][axis] = prediction + residual
-            self.classes[v][axis] = abs(residual).bit_length()
-            other = max(other, self.classes[v][axis])
+                self.vertex(v)
+        self.d.finish()
 
-    def color(self, v):
-        self.green_classes.append(0)
-        scale = self.scale(v, lambda x: self.green_classes[x])
-        other = sign_context = green = 0
-        for channel in (1, 0, 2, 3):
-            value = lambda x: self.vertices[x][1][channel]
-            if self.neighbors:
-                mean = self.neighbor_mean(value, 64)
-                if self.parallelograms:
-                    mean += rnd(3 * (self.parallelogram_mean(value, 64) - mean), 4)
-                spatial = rnd(mean, 64)
+    def read_weights(self):
+        raw = self.d.raw
+        self.share, self.lifted, self.exact, self.period = [(0, 0)] * 16, 0, 0, 0
+        self.raw = raw(1)
+        if self.raw:
+            return
+        self.lifted, self.exact = raw(1), raw(1)
+        self.period = raw(16) if raw(1) else 0
+        if raw(1):
+            for c in range(16):
+                if raw(1):
+                    self.share[c] = tuple((raw(8) ^ 128) - 128 for _ in range(2))
+
+    def find_parts(self):
+        self.parts, seen, mesh = [], 0, self.mesh
+        for f, (first, n) in enumerate(mesh.faces):
+            gate = mesh.twin[first]
+            if (gate is None or mesh.face_of[gate] >= f) and (not self.parts or self.parts[-1] != seen):
+                self.parts.append(seen)
+            seen = max([seen] + [x + 1 for x in mesh.vertex[first : first + n]])
+
+    def lag(self, v):
+        if self.period:
+            return self.period, False
+        if v >= self.h.points:
+            return 0, False
+        part = max(i for i, first in enumerate(self.parts) if first <= v)
+        return (self.parts[part] - self.parts[part - 1] if part else 0), self.parts[part] == v
+
+    def predict(self, s, v):
+        clamp = lambda x: max(0, min(self.mask, x))
+        order, normal, spread = [0, 1, 2], [0, 0, 0], 0
+        at = [0, 0, 0]
+        if s.parallelograms:
+            share = self.share[(0 if s.extended else min(3, len(s.parallelograms))) * 4 + max(0, min(3, s.corners - 4))]
+            for axis in range(3):
+                x = lambda w: self.at[w][axis]
+                base = mean(s.parallelogram_sum(x), len(s.parallelograms), 6)
+                off = mean(sum(x(w) for w in s.neighbors), len(s.neighbors), 6) - base
+                twist = mean(sum(x(a) + x(b) - x(c) - x(d) for a, b, c, d in s.twists), len(s.twists), 6)
+                at[axis] = base * 128 + off * share[0] + twist * share[1] + 4096 >> 13
+                spread = max(spread, abs(off))
+            spread = min(17, (spread >> 6).bit_length())
+            if self.lifted:
+                n = [0, 0, 0]
+                for a, b, d in s.parallelograms:
+                    u = [self.at[a][i] - self.at[d][i] for i in range(3)]
+                    w = [self.at[b][i] - self.at[d][i] for i in range(3)]
+                    for i in range(3):
+                        j, k = (i + 1) % 3, (i + 2) % 3
+                        n[i] += u[j] * w[k] - u[k] * w[j]
+                for i, j in ((0, 1), (1, 2), (0, 1)):
+                    if abs(n[order[i]]) > abs(n[order[j]]):
+                        order[i], order[j] = order[j], order[i]
+                normal = [n[i] for i in order]
+        elif s.neighbors:
+            at = [mean(sum(self.at[w][axis] for w in s.neighbors), len(s.neighbors)) for axis in range(3)]
+        elif v:
+            at = self.at[v - 1]
+        return [clamp(x) for x in at], order, normal, spread, s.basis
+
+    def vertex(self, v):
+        s = Stencil(self.mesh, self.mesh.vertex, self.mesh.twin, self.around[v] if v < self.h.points else [], v)
+        plain = self.predict(s, v)
+        lag, first = self.lag(v)
+        if lag == 0 or lag >= v:
+            return self.code(v, s, plain)
+        other = [max(0, min(self.mask, self.at[v - 1][i] + self.at[v - lag][i] - self.at[v - lag - 1][i])) for i in range(3)]
+        error = self.error[first]
+        self.code(v, s, (other, [0, 1, 2], [0, 0, 0], 0, 6) if error[1] < error[0] else plain)
+        for k, prediction in enumerate((plain[0], other)):
+            cost = sum(abs(self.at[v][i] - prediction[i]).bit_length() for i in range(3))
+            error[k] += 64 * cost - error[k] >> 3
+
+    def code(self, v, s, prediction):
+        at, order, normal, other, basis = prediction
+        if self.exact and self.choose(v, s, at, basis):
+            return
+        missed = [0, 0, 0]
+        scales = [s.scale(v, lambda x: self.classes[x][role]) for role in range(3)]
+        for role in range(3):
+            axis = order[role]
+            expected = at[axis]
+            if role == 2 and normal[2]:
+                follows = -(normal[0] * missed[0] + normal[1] * missed[1])
+                expected += rnd(follows, normal[2]) if normal[2] > 0 else rnd(-follows, -normal[2])
+                expected = max(0, min(self.mask, expected))
+            r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role))
+            self.at[v][axis] = expected + r & self.mask
+            missed[role] = self.at[v][axis] - at[axis]
+            self.classes[v][role] = abs(r).bit_length()
+            other = self.classes[v][role] if role == 0 else max(other, self.classes[v][role])
+
+    def choose(self, v, s, at, basis):
+        candidates = [None, list(at)]
+        for a, b, d in s.parallelograms:
+            p = [max(0, min(self.mask, self.at[a][i] + self.at[b][i] - self.at[d][i])) for i in range(3)]
+            if len(candidates) < 8 and p not in candidates:
+                candidates.append(p)
+        n = len(candidates)
+        choice = self.d.symbol([("choice 1", basis, n), ("choice 2", self.last_choice, n)], n)
+        self.last_choice = min(choice, 7)
+        if choice == 0 or choice >= n:
+            return False
+        self.at[v] = candidates[choice]
+        return True
+
+
+class Attributes:  # sections 7 to 9
+    def __init__(self, header, mesh, seams, positions):
+        self.h, self.mesh, self.seams = header, mesh, seams
+        self.vertex, self.twin = seams.corner_vertex, list(mesh.twin)
+        for c, t in enumerate(mesh.twin):
+            if t is not None and (self.vertex[c] != self.vertex[mesh.next[t]] or self.vertex[mesh.next[c]] != self.vertex[t]):
+                self.twin[c] = None
+        self.around = [[] for _ in range(header.vertices)]
+        for corner, vertex in enumerate(self.vertex):
+            self.around[vertex].append(corner)
+        self.position = [positions.at[seams.point[v] if v < header.used else v - header.split] for v in range(header.vertices)]
+        self.stencils = [Stencil(mesh, self.vertex, self.twin, self.around[v], v) for v in range(header.vertices)]
+        self.colors = [list(header.color or [0] * 4) for _ in self.position]
+        self.normals = [[0, 0] for _ in self.position]
+        self.texcoords = [[0, 0] for _ in self.position]
+        if header.sections[3] or (self.position and not header.color):
+            self.d = Decoder(header.sections[3])
+            self.code_colors()
+            self.d.finish()
+        if self.position and header.normal_bits:
+            self.d = Decoder(header.sections[4])
+            self.code_normals()
+            self.d.finish()
+        if self.position and header.texcoord_bits:
+            self.d = Decoder(header.sections[5])
+            self.code_texcoords()
+            self.d.finish()
+
+    def sibling(self, v):
+        return self.seams.sibling[v] if v < self.h.used else None
+
+    def same_as_sibling(self, v, values, memory):
+        w = self.sibling(v)
+        if w is None:
+            return False
+        self.last_same = self.d.bit(("same", self.last_same))
+        if self.last_same:
+            values[v], memory[v] = list(values[w]), memory[w]
+        return self.last_same
+
+    def component(self, name, basis, scale, other, before):
+        sign = 0 if before == 0 else 1 if before > 0 else 2
+        return self.d.residual((name, "scale", basis, scale), (name, "other", basis, other), (name, "detail", sign))
+
+    def code_colors(self):
+        d, memory, self.last_same = self.d, {}, 1
+        alpha = d.raw(8) if d.raw(1) else None
+        shares = [0, 0] + [d.raw(8) for _ in range(4)]
+        variance, covariance = 1024, {0: 1024, 2: 1024}
+        for v, s in enumerate(self.stencils):
+            memory[v] = 0
+            if self.same_as_sibling(v, self.colors, memory):
+                continue
+            scale = s.scale(v, lambda x: memory[x])
+            other = before = green = 0
+            for channel in (1, 0, 2, 3):
+                if channel == 3 and alpha is not None:
+                    self.colors[v][3] = alpha
+                    continue
+                at = lambda x: self.colors[x][channel]
+                if s.neighbors:
+                    m = p = mean(sum(at(x) for x in s.neighbors), len(s.neighbors), 6)
+                    if s.parallelograms:
+                        p = mean(s.parallelogram_sum(at), len(s.parallelograms), 6)
+                    spatial = 128 * m + shares[s.basis] * (p - m) + 4096 >> 13
+                else:
+                    w = self.sibling(v)
+                    spatial = at(v - 1 if w is None else w) if v else 255
+                prediction = spatial
+                if channel in covariance:
+                    c = covariance[channel] * 256
+                    ratio = abs(c) // variance * (1 if c >= 0 else -1)
+                    prediction += rnd(max(-512, min(512, ratio)) * green, 256)
+                prediction = max(0, min(255, prediction))
+                r = self.component(channel, s.basis, scale, other, before)
+                level = self.colors[v][channel] = prediction + r & 255
+                other, before = max(other, abs(r).bit_length()), r
+                if channel == 1:
+                    green, memory[v] = r, abs(r).bit_length()
+                    variance = max(32, variance + 64 * green * green - (variance >> 7))
+                elif channel in covariance:
+                    covariance[channel] += 64 * (level - spatial) * green - (covariance[channel] >> 7)
+
+    def folded(self, at, m):
+        x, y = at
+        if abs(y) == m and x < 0 or abs(x) == m and y < 0:
+            return [x, y]
+        return [-(m - abs(y)) if x < 0 else m - abs(y), -(m - abs(x)) if y < 0 else m - abs(x)]
+
+    def face_normal(self, v):
+        total, p, mesh = [0, 0, 0], self.position, self.mesh
+        for c in self.around[v][:64]:
+            a = [p[self.vertex[mesh.next[c]]][i] - p[v][i] for i in range(3)]
+            b = [p[self.vertex[mesh.previous[c]]][i] - p[v][i] for i in range(3)]
+            for i in range(3):
+                j, k = (i + 1) % 3, (i + 2) % 3
+                total[i] += a[j] * b[k] - a[k] * b[j]
+        return total
+
+    def code_normals(self):
+        m, memory, self.last_same = (1 << self.h.normal_bits - 1) - 1, {}, 1
+        wrap = lambda x: x - 2 * m - 1 if x > m else x + 2 * m + 1 if x < -m else x
+        clamp = lambda x: max(-m, min(m, x))
+        for v, s in enumerate(self.stencils):
+            memory[v] = ((0, 0), (0, 0))
+            if self.same_as_sibling(v, self.normals, memory):
+                continue
+            n = self.face_normal(v)
+            length = sum(abs(x) for x in n)
+            below = length > 0 and n[2] < 0
+            if length:
+                faces = [rnd(n[0] * m, length), rnd(n[1] * m, length)]
+                basis = 5 if s.neighbors else 1
             else:
-                spatial = value(v - 1) if v else 255
-            prediction = spatial
-            if channel in self.covariance:
-                c = self.covariance[channel] * 256
-                ratio = abs(c) // self.variance * (1 if c >= 0 else -1)
-                prediction += rnd(max(-512, min(512, ratio)) * green, 256)
-            prediction = max(0, min(255, prediction))
-            residual = self.colors.residual(channel, self.basis, scale, other, sign_context)
-            level = prediction + residual
-            assert 0 <= level <= 255
-            self.vertices[v][1][channel] = level
-            other = max(other, abs(residual).bit_length())
-            sign_context = 0 if residual == 0 else 1 if residual > 0 else 2
-            if channel == 1:
-                green = residual
-                self.green_classes[v] = abs(residual).bit_length()
-                self.variance = max(32, self.variance + 64 * green * green - (self.variance >> 7))
-            elif channel in self.covariance:
-                self.covariance[channel] += 64 * (level - spatial) * green - (self.covariance[channel] >> 7)
+                w, basis = self.sibling(v), 0
+                faces = []
+                for i in range(2):
+                    at = lambda x: self.normals[x][i] - m
+                    if s.neighbors:
+                        faces.append(mean(sum(at(x) for x in s.neighbors), len(s.neighbors)))
+                    else:
+                        faces.append((at(v - 1 if w is None else w)) if v else 0)
+            actual, classes, off, other, before = [0, 0], [0, 0], [0, 0], 0, 0
+            for i in range(2):
+                prediction = faces[i]
+                if length and s.neighbors:
+                    step = mean(sum(memory[x][1][i] for x in s.neighbors), len(s.neighbors))
+                    prediction += abs(step) // 2 * (1 if step >= 0 else -1)
+                prediction = clamp(prediction)
+                scale = s.scale(v, lambda x: memory[x][0][i])
+                r = self.component(i, basis, scale, other, before)
+                actual[i] = clamp(wrap(prediction + r))
+                off[i] = clamp(actual[i] - faces[i]) if length else 0
+                classes[i] = other = abs(r).bit_length()
+                before = r
+            memory[v] = (classes, off)
+            if below:
+                actual = self.folded(actual, m)
+            self.normals[v] = [x + m for x in actual]
+
+    def similar(self, v):
+        sums, count = [[0.0, 0.0], [0.0, 0.0]], 0
+        for c in self.around[v]:
+            if count == 8:
+                break
+            a, b = self.vertex[self.mesh.next[c]], self.vertex[self.mesh.previous[c]]
+            if a >= v or b >= v:
+                continue
+            dot = edge_edge = side_side = 0.0
+            for i in range(3):
+                edge = float(self.position[b][i] - self.position[a][i])
+                side = float(self.position[v][i] - self.position[a][i])
+                dot, edge_edge, side_side = dot + edge * side, edge_edge + edge * edge, side_side + side * side
+            along, across = 0.5, 0.0
+            if edge_edge > 0:
+                along = dot / edge_edge
+                across = math.sqrt(max(0.0, side_side * edge_edge - dot * dot)) / edge_edge
+            ta, tb = self.texcoords[a], self.texcoords[b]
+            x, y = float(tb[0] - ta[0]), float(tb[1] - ta[1])
+            sums[0][0] += (ta[0] + along * x) - across * y
+            sums[0][1] += (ta[1] + along * y) + across * x
+            sums[1][0] += (ta[0] + along * x) + across * y
+            sums[1][1] += (ta[1] + along * y) - across * x
+            count += 1
+        return sums, count
+
+    def code_texcoords(self):
+        mask, half = (1 << self.h.texcoord_bits) - 1, 1 << self.h.texcoord_bits - 1
+        memory, self.last_same, orientation, error = {}, 1, 0, [0, 0]
+        for v, s in enumerate(self.stencils):
+            memory[v] = (0, 0)
+            if self.same_as_sibling(v, self.texcoords, memory):
+                continue
+            sums, count = self.similar(v)
+            w, plain = self.sibling(v), [0, 0]
+            for i in range(2):
+                at = lambda x: self.texcoords[x][i]
+                if s.parallelograms:
+                    plain[i] = mean(s.parallelogram_sum(at), len(s.parallelograms))
+                elif s.neighbors:
+                    plain[i] = mean(sum(at(x) for x in s.neighbors), len(s.neighbors))
+                else:
+                    plain[i] = at(v - 1 if w is None else w) if v else 0
+            plain = [max(0, min(mask, x)) for x in plain]
+            plain_basis = 4 if s.basis >= 3 or len(s.parallelograms) > 1 else s.basis
+            shaped, shaped_basis = plain, plain_basis
+            if count:
+                shaped = [int(min(max(math.floor(x / count + 0.5), 0.0), float(mask))) for x in sums[orientation]]
+                shaped_basis = 5 if count > 1 else 3
+            chosen, basis = (plain, plain_basis) if error[1] < error[0] else (shaped, shaped_basis)
+            other, before, classes = 0, 0, [0, 0]
+            for i in range(2):
+                r = self.component(i, basis, s.scale(v, lambda x: memory[x][i]), other, before)
+                self.texcoords[v][i] = chosen[i] + r & mask
+                classes[i] = other = abs(r).bit_length()
+                before = r
+            memory[v] = classes
+            if count:
+                t = self.texcoords[v]
+                for k, p in enumerate((shaped, plain)):
+                    cost = sum(abs(t[i] - p[i]).bit_length() for i in range(2))
+                    error[k] += 64 * cost - error[k] >> 3
+                missed = [abs(t[0] - sums[o][0] / count) + abs(t[1] - sums[o][1] / count) for o in range(2)]
+                if missed[0] != missed[1]:
+                    orientation = 0 if missed[0] < missed[1] else 1
+
+    def result(self):
+        return list(zip(self.position, self.colors, self.normals, self.texcoords))
 
 
-def materials(header, mesh):  # section 7
+def materials(header, mesh):  # section 10
     if header.highest == 0:
         return [0] * header.faces
-    d, material, same = Decoder(header.sections[3]), [], 1
+    d, material, same = Decoder(header.sections[6]), [], 1
     for f, (first, _) in enumerate(mesh.faces):
         twin = mesh.twin[first]
         if twin is not None and mesh.face_of[twin] < f:
@@ -424,8 +854,8 @@ def materials(header, mesh):  # section 7
     return material
 
 
-def restore_order(header, vertices, faces):  # section 8
-    d = Decoder(header.sections[4])
+def restore_order(header, vertices, faces):  # section 11
+    d = Decoder(header.sections[7])
 
     def permutation(n, name):
         previous, context, result = -1, 33, []
@@ -453,16 +883,19 @@ def restore_order(header, vertices, faces):  # section 8
 def decode(data):
     header = Header(data)
     mesh = Connectivity(header)
-    vertices = Attributes(header, mesh).vertices
-    corner_lists = [mesh.vertex[first : first + n] for first, n in mesh.faces]
+    seams = Seams(header, mesh)
+    vertices = []
+    if header.vertices:
+        vertices = Attributes(header, mesh, seams, Positions(header, mesh)).result()
+    corner_lists = [seams.corner_vertex[first : first + n] for first, n in mesh.faces]
     faces = list(zip(corner_lists, materials(header, mesh)))
-    return restore_order(header, vertices, faces) if header.flags & 1 else (vertices, faces)
+    return restore_order(header, vertices, faces) if header.flags & 1 and vertices else (vertices, faces)
 
 
 def fnv(vertices, faces):
     h = 1469598103934665603
-    for position, color in vertices:
-        for x in list(position) + list(color):
+    for fields in vertices:
+        for x in [x for field in fields for x in field]:
             h = ((h ^ x) * 1099511628211) & M64
     for corners, material in faces:
         for x in list(corners) + [material]:

@@ -1,127 +1,147 @@
-// Bytes of the geometry codec beside Draco's, on the same integers: positions on our grid, RGBA8, triangles for Draco
-// (it has no polygons). usage: geom_peers [--bits N] [FILE.obj|FILE.ply ...]; without files the built-in room and pins.
-#include <draco/compression/encode.h>
-#include <draco/mesh/mesh.h>
+// Bytes and speed of the geometry codec beside Draco (levels 7 and 10) and meshoptimizer + zstd -19, on the same
+// integers. usage: geom_peers [--large] [--speed REPEATS] [--bits N] [--only TEXT] [FILE...]
+//   --large   also meshes of 75,000 triangles and more    --speed   also times, each the shortest of REPEATS runs
+//   --bits    only this position precision                --only    only variants whose name contains TEXT
+#include "bench/peers/geom_peers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <string>
-#include <vector>
-
-#include "base/file_io.h"
-#include "geomcodec/geomcodec.h"
-#include "raster/load_ply.h"
-#include "raster/triangulate.h"
-#include "sim/scenes.h"
 
 namespace {
 
-using pac::geomcodec::EncodedSize;
 using pac::geomcodec::QuantizedMesh;
+using pac::peers::Attributes;
+using pac::peers::Measured;
+using pac::peers::NamedMesh;
 
-// What a mesh takes in Draco at a compression level (0..10), or 0 if Draco refuses it.
-size_t draco_bytes(const QuantizedMesh& mesh, int level) {
-  draco::Mesh out;
-  const auto n_points = static_cast<uint32_t>(mesh.vertices.size());
-  out.set_num_points(n_points);
-  const auto add = [&](draco::GeometryAttribute::Type type, int8_t n_components, draco::DataType data_type,
-                       size_t size) {
-    draco::GeometryAttribute attribute;
-    attribute.Init(type, nullptr, static_cast<uint8_t>(n_components), data_type,
-                   type == draco::GeometryAttribute::COLOR, static_cast<int64_t>(size), 0);
-    return out.attribute(out.AddAttribute(attribute, true, n_points));
-  };
-  draco::PointAttribute* position = add(draco::GeometryAttribute::POSITION, 3, draco::DT_INT32, 12);
-  draco::PointAttribute* color = add(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8, 4);
-  for (uint32_t v = 0; v < n_points; ++v) {
-    const int32_t p[3] = {mesh.vertices[v].position[0], mesh.vertices[v].position[1], mesh.vertices[v].position[2]};
-    position->SetAttributeValue(draco::AttributeValueIndex(v), p);
-    color->SetAttributeValue(draco::AttributeValueIndex(v), mesh.vertices[v].color);
-  }
-  pac::Mesh floats = pac::geomcodec::dequantize(mesh);
-  pac::raster::PolygonCutter cutter;
-  for (const pac::Face& face : mesh.faces) {
-    for (const pac::raster::CornerTriple& triangle : cutter.cut(floats, face)) {
-      draco::Mesh::Face f;
-      for (size_t k = 0; k < 3; ++k) f[k] = draco::PointIndex(mesh.indices[face.first + triangle.corner[k]]);
-      out.AddFace(f);
+struct Variant {
+  const char* name;
+  int bits;  // 0: 16-bit screen space
+  Attributes attributes;
+};
+constexpr Variant kVariants[] = {
+    {"11 bits, positions", 11, {}},
+    {"11 bits, colors", 11, {true, false, false}},
+    {"14 bits, positions", 14, {}},
+    {"14 bits, colors", 14, {true, false, false}},
+    {"14 bits, normals (10) and texture (12)", 14, {false, true, true}},
+    {"16 bits, positions", 16, {}},
+    {"16 bits, colors", 16, {true, false, false}},
+    {"screen, 16 bits, colors", 0, {true, false, false}},
+};
+
+// Seen from a corner of its bounding box, 640 x 480, a field of view of about 50 degrees: x, y in 1/16 pixel, depth in
+// 16 bits.
+pac::Mesh on_screen(const pac::Mesh& mesh) {
+  double low[3] = {1e30, 1e30, 1e30}, high[3] = {-1e30, -1e30, -1e30};
+  for (const pac::Vertex& vertex : mesh.vertices) {
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], double{vertex.position[i]});
+      high[i] = std::max(high[i], double{vertex.position[i]});
     }
   }
-  out.DeduplicateAttributeValues();
-  out.DeduplicatePointIds();
-  draco::Encoder encoder;
-  encoder.SetSpeedOptions(10 - level, 10 - level);
-  draco::EncoderBuffer buffer;
-  return encoder.EncodeMeshToBuffer(out, &buffer).ok() ? buffer.size() : 0;
+  double size = 0;
+  for (int i = 0; i < 3; ++i) size = std::max(size, high[i] - low[i]);
+  if (!(size > 0)) size = 1;
+  pac::Mesh result = mesh;
+  for (pac::Vertex& vertex : result.vertices) {
+    double p[3];
+    for (int i = 0; i < 3; ++i) p[i] = (vertex.position[i] - 0.5 * (low[i] + high[i])) / size;
+    const double right = 0.8 * p[0] - 0.6 * p[1], ahead = 0.6 * p[0] + 0.8 * p[1];
+    const double up = 0.9 * p[2] + 0.43 * ahead, depth = 1.9 + 0.9 * ahead - 0.43 * p[2];
+    vertex.position[0] = static_cast<float>(16 * (320 + 480 * right / depth));
+    vertex.position[1] = static_cast<float>(16 * (240 - 480 * up / depth));
+    vertex.position[2] = static_cast<float>(65535 * std::clamp((1 / 0.9 - 1 / depth) / (1 / 0.9 - 1 / 2.9), 0.0, 1.0));
+  }
+  return result;
 }
 
-void report(const std::string& name, const QuantizedMesh& mesh) {
-  EncodedSize size;
-  const auto bytes = pac::geomcodec::encode(mesh, {}, &size);
-  if (!bytes) {
-    std::printf("%-16s %s\n", name.c_str(), bytes.failure().text);
-    return;
-  }
-  const auto n_vertices = static_cast<double>(mesh.vertices.size()), n_faces = static_cast<double>(mesh.faces.size());
-  const size_t cl7 = draco_bytes(mesh, 7), cl10 = draco_bytes(mesh, 10);
-  const auto total = static_cast<double>(bytes->size());
-  std::printf("%-16s %8.0f %8.0f | %7llu %7llu %7llu %8.0f | %6.2f %6.2f | %8zu %8zu %6.3f\n", name.c_str(), n_vertices,
-              n_faces, static_cast<unsigned long long>(size.connectivity_bytes),
-              static_cast<unsigned long long>(size.position_bytes), static_cast<unsigned long long>(size.color_bytes),
-              total, total / n_vertices, total / n_faces, cl7, cl10, total / static_cast<double>(std::min(cl7, cl10)));
+bool quantized(const NamedMesh& named, const Variant& variant, QuantizedMesh& out) {
+  if (variant.attributes.texcoords && !named.has_texcoords) return false;
+  pac::geomcodec::AttributeBits bits;
+  bits.position = variant.bits;
+  bits.normal = variant.attributes.normals ? 10 : 0;
+  bits.texcoord = variant.attributes.texcoords ? 12 : 0;
+  const auto result = variant.bits == 0 ? pac::geomcodec::quantize(on_screen(named.mesh), pac::geomcodec::Grid{})
+                                        : pac::geomcodec::quantize(named.mesh, bits);
+  if (!result.ok()) return false;
+  out = *result;
+  if (!variant.attributes.colors)
+    for (auto& vertex : out.vertices) std::fill(vertex.color, vertex.color + 4, uint8_t{255});
+  for (pac::Face& face : out.faces) face.material = 0;
+  out = pac::geomcodec::merge_equal_vertices(out);
+  return true;
 }
 
-// A plausible shading, where a model has no colors: two lights and a slow pattern, quantized to 8 bits.
-void shade(pac::Mesh& mesh) {
-  for (pac::Vertex& vertex : mesh.vertices) {
-    const float* n = vertex.normal;
-    const float key = std::max(0.0f, 0.5f * n[0] + 0.6f * n[1] + 0.62f * n[2]);
-    const float fill = std::max(0.0f, -0.8f * n[0] + 0.2f * n[1] + 0.5f * n[2]), gloss = key * key * key * key;
-    const float light[3] = {0.2f + 0.6f * key + 0.1f * fill, 0.2f + 0.58f * key + 0.12f * fill,
-                            0.22f + 0.5f * key + 0.2f * fill};
-    const float albedo[3] = {0.8f, 0.6f, 0.5f};
-    for (int c = 0; c < 3; ++c)
-      vertex.color[c] = static_cast<uint8_t>(255 * std::min(1.0f, light[c] * albedo[c] + 0.25f * gloss * gloss) + 0.5f);
+struct Means {
+  double log_bytes = 0, log_encode = 0, log_decode = 0, worst = 0;
+  int n = 0, n_above_meshoptimizer = 0;
+};
+
+void run(const NamedMesh& named, const Variant& variant, int repeats, Means& means) {
+  QuantizedMesh mesh;
+  if (!quantized(named, variant, mesh)) return;
+  const Measured ours = pac::peers::measure_pac(mesh, repeats);
+  const Measured draco7 = pac::peers::measure_draco(mesh, variant.attributes, 7, repeats);
+  const Measured draco10 = pac::peers::measure_draco(mesh, variant.attributes, 10, repeats);
+  const Measured other = pac::peers::measure_meshoptimizer_zstd(mesh, variant.attributes);
+  if (ours.bytes == 0 || draco10.bytes == 0 || draco7.bytes == 0) return;
+  const double ratio = static_cast<double>(ours.bytes) / static_cast<double>(draco10.bytes);
+  std::printf("%-16s %7zu %7zu | %8zu %8zu %8zu %8zu | %6.3f%s", named.name.c_str(), mesh.vertices.size(),
+              mesh.faces.size(), ours.bytes, draco7.bytes, draco10.bytes, other.bytes, ratio,
+              ours.bytes > other.bytes ? " > meshopt" : "");
+  if (repeats > 0) {
+    std::printf(" | encode %5.2f x Draco 10, decode %5.2f x Draco 7 (%.2f, %.2f M faces/s)",
+                draco10.encode_seconds / ours.encode_seconds, draco7.decode_seconds / ours.decode_seconds,
+                1e-6 * static_cast<double>(mesh.faces.size()) / ours.encode_seconds,
+                1e-6 * static_cast<double>(mesh.faces.size()) / ours.decode_seconds);
+    means.log_encode += std::log(draco10.encode_seconds / ours.encode_seconds);
+    means.log_decode += std::log(draco7.decode_seconds / ours.decode_seconds);
   }
+  std::printf("\n");
+  means.log_bytes += std::log(ratio);
+  means.worst = std::max(means.worst, ratio);
+  means.n_above_meshoptimizer += ours.bytes > other.bytes ? 1 : 0;
+  ++means.n;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  int bits = 14;
-  std::vector<std::string> files;
+  int large = 0, repeats = 0, bits = -1;
+  const char* only = "";
+  std::vector<NamedMesh> meshes;
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--bits") == 0 && i + 1 < argc)
+    const std::string argument = argv[i];
+    if (argument == "--large") {
+      large = 1;
+    } else if (argument == "--speed" && i + 1 < argc) {
+      repeats = std::atoi(argv[++i]);
+    } else if (argument == "--bits" && i + 1 < argc) {
       bits = std::atoi(argv[++i]);
-    else
-      files.emplace_back(argv[i]);
-  }
-  std::printf("%d-bit positions, RGBA8; bytes\n%-16s %8s %8s | %7s %7s %7s %8s | %6s %6s | %8s %8s %6s\n", bits, "mesh",
-              "vertices", "polygons", "connect", "pos", "color", "total", "B/vtx", "B/poly", "Draco 7", "Draco 10",
-              "ratio");
-  const auto run = [&](const std::string& name, const pac::Mesh& mesh) {
-    const auto quantized = pac::geomcodec::quantize(mesh, bits);
-    if (quantized) report(name, *quantized);
-  };
-  for (const std::string& file : files) {
-    const auto bytes = pac::read_file(file);
-    if (!bytes) continue;
-    auto loaded = pac::raster::load_model(*bytes, {});
-    if (!loaded) {
-      std::printf("%s: %s\n", file.c_str(), loaded.failure().text);
-      continue;
+    } else if (argument == "--only" && i + 1 < argc) {
+      only = argv[++i];
+    } else {
+      NamedMesh mesh;
+      if (pac::peers::load_file(argument, mesh)) meshes.push_back(std::move(mesh));
     }
-    shade(loaded->scene.mesh);
-    run(file.substr(file.find_last_of('/') + 1), loaded->scene.mesh);
   }
-  for (const char* name : {"room", "pin"}) {
-    if (files.size() > 1) break;
-    const pac::sim::BuiltinScene* scene = pac::sim::find_scene(name);
-    if (scene == nullptr) continue;
-    const pac::sim::SceneSet set = scene->build(1);
-    run(name, set.fine.mesh);
-    if (!set.coarse.mesh.faces.empty()) run(std::string(name) + " coarse", set.coarse.mesh);
+  if (meshes.empty()) meshes = pac::peers::test_meshes(large);
+  for (const Variant& variant : kVariants) {
+    if ((bits >= 0 && variant.bits != bits) || std::strstr(variant.name, only) == nullptr) continue;
+    std::printf("\n%s\n%-16s %7s %7s | %8s %8s %8s %8s | %6s\n", variant.name, "mesh", "vertex", "face", "pac",
+                "Draco 7", "Draco 10", "mo+zstd", "pac/10");
+    Means means;
+    for (const NamedMesh& mesh : meshes) run(mesh, variant, repeats, means);
+    if (means.n == 0) continue;
+    std::printf("%-16s bytes %.3f x Draco 10, worst %.3f, above meshoptimizer + zstd: %d of %d", "geometric mean",
+                std::exp(means.log_bytes / means.n), means.worst, means.n_above_meshoptimizer, means.n);
+    if (repeats > 0)
+      std::printf("; encode %.2f x Draco 10, decode %.2f x Draco 7", std::exp(means.log_encode / means.n),
+                  std::exp(means.log_decode / means.n));
+    std::printf("\n");
   }
 }

@@ -36,8 +36,11 @@ void json_sizes(sim::JsonWriter& json, const EncodedSize& size, const Counts& co
   json.begin_object("parts");
   json.field("header", size.header_bytes);
   json.field("connectivity", size.connectivity_bytes);
+  json.field("seams", size.seam_bytes);
   json.field("positions", size.position_bytes);
   json.field("colors", size.color_bytes);
+  json.field("normals", size.normal_bytes);
+  json.field("texcoords", size.texcoord_bytes);
   json.field("materials", size.material_bytes);
   json.field("order", size.order_bytes);
   json.end_object();
@@ -52,9 +55,11 @@ void print_sizes(std::FILE* out, const EncodedSize& size, const Counts& counts) 
   const struct {
     const char* name;
     uint64_t bytes;
-  } parts[] = {{"header", size.header_bytes},      {"connectivity", size.connectivity_bytes},
-               {"positions", size.position_bytes}, {"colors", size.color_bytes},
-               {"materials", size.material_bytes}, {"order", size.order_bytes}};
+  } parts[] = {{"header", size.header_bytes},    {"connectivity", size.connectivity_bytes},
+               {"seams", size.seam_bytes},       {"positions", size.position_bytes},
+               {"colors", size.color_bytes},     {"normals", size.normal_bytes},
+               {"texture", size.texcoord_bytes}, {"materials", size.material_bytes},
+               {"order", size.order_bytes}};
   for (const auto& part : parts)
     if (part.bytes > 0) std::fprintf(out, "  %-13s %12s\n", part.name, grouped(part.bytes).c_str());
 }
@@ -65,18 +70,24 @@ int run_geom_encode(Args args) {
   Options options("geom encode", "codes a polygon mesh: positions quantized, then without loss",
                   "pac geom encode model.obj --position-bits 14 -o model.pgc");
   std::string in, out;
-  int position_bits = 16;
+  geomcodec::AttributeBits bits;
   geomcodec::EncodeOptions encode;
   options.positional("IN", in, "OBJ or PLY, or the name of a built-in scene");
   options.text("-o|--output", "OUT.pgc", out, "the stream; - is stdout", true);
-  options.integer("--position-bits", "N", position_bits, 1, 16, "of the grid along the longest side (16)");
-  options.flag("--keep-order", encode.keep_order, "vertices and polygons come back in the order given");
+  options.integer("--position-bits", "N", bits.position, 1, 16, "of the grid along the longest side (16)");
+  options.integer("--normal-bits", "N", bits.normal, 0, 16,
+                  "2..16 a component of octahedral normals; 0 drops them (0)");
+  options.integer("--texcoord-bits", "N", bits.texcoord, 0, 16, "of texture coordinates; 0 drops them (0)");
+  options.flag("--keep-order", encode.keep_order,
+               "vertices and polygons come back in the order given; else equal vertices become one");
   if (const auto code = options.parse(args)) return *code;
   if (options.json && out == "-") return options.usage_error("--json and -o - both want stdout");
   auto scene = load_scene(in, options);
   if (!scene) return kBadData;
-  const auto quantized = geomcodec::quantize(scene->set.fine.mesh, position_bits);
+  if (bits.normal == 1) return options.usage_error("--normal-bits is 0 or 2..16");
+  auto quantized = geomcodec::quantize(scene->set.fine.mesh, bits);
   if (!quantized.ok()) return data_error(in, quantized.failure());
+  if (!encode.keep_order) quantized = geomcodec::merge_equal_vertices(*quantized);
   EncodedSize size;
   const auto bytes = geomcodec::encode(*quantized, encode, &size);
   if (!bytes.ok()) return data_error(in, bytes.failure());
@@ -86,7 +97,7 @@ int run_geom_encode(Args args) {
     sim::JsonWriter json;
     json.begin_object();
     json_sizes(json, size, counts);
-    json.field("position_bits", position_bits);
+    json.field("position_bits", bits.position);
     json.end_object();
     return print_json(json);
   }
@@ -139,6 +150,9 @@ int run_geom_info(Args args) {
   json.field("version", info->version);
   json.field("position_bits", info->position_bits);
   json.field("materials", info->n_materials);
+  json.field("normal_bits", info->normal_bits);
+  json.field("texcoord_bits", info->texcoord_bits);
+  json.field("distinct_positions", info->n_points);
   json.field("constant_color", info->constant_color);
   json.field("keeps_order", info->keeps_order);
   json.end_object();

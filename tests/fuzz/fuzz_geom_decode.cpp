@@ -14,13 +14,31 @@ size_t checksum_offset(const std::vector<uint8_t>& bytes) {
   if (bytes.size() < 6) return bytes.size();
   const uint8_t flags = bytes[4];
   size_t at = 6;
-  const auto skip_numbers = [&](int count) {
-    for (; count > 0 && at < bytes.size(); ++at) count -= bytes[at] < 0x80 ? 1 : 0;
+  const auto number = [&] {
+    uint64_t value = 0;
+    for (int shift = 0; at < bytes.size(); shift += 7) {
+      value |= shift < 35 ? uint64_t{bytes[at] & 0x7Fu} << shift : 0;
+      if (bytes[at++] < 0x80) break;
+    }
+    return value;
   };
   if ((flags & 4) == 0) at += (flags & 8) != 0 ? 16 : 24;
-  skip_numbers(5);
-  if ((flags & 2) != 0) at += 4;
-  skip_numbers(5);
+  at += ((flags & 16) != 0 ? 1u : 0u) + ((flags & 32) != 0 ? 13u : 0u);
+  const uint64_t used = number(), split = number(), isolated = number(), faces = number();
+  number();
+  const uint64_t highest_material = number();
+  const bool constant = (flags & 2) != 0, some = used + isolated > 0;
+  if (constant) at += 4;
+  const bool present[] = {faces > 0,
+                          split > 0,
+                          some,
+                          some && !constant,
+                          some && (flags & 16) != 0,
+                          some && (flags & 32) != 0,
+                          highest_material > 0,
+                          some && (flags & 1) != 0};
+  for (const bool size : present)
+    if (size) number();
   return at;
 }
 

@@ -195,6 +195,39 @@ QuantizedMesh extremes(int bits) {
   return mesh;
 }
 
+// A vertex of its own for every corner of every n-th face: hard edges, seams.
+QuantizedMesh with_seams(QuantizedMesh mesh, uint32_t every) {
+  for (size_t f = 0; f < mesh.faces.size(); f += every) {
+    for (uint32_t k = 0; k < mesh.faces[f].count; ++k) {
+      uint32_t& index = mesh.indices[mesh.faces[f].first + k];
+      mesh.vertices.push_back(mesh.vertices[index]);
+      index = static_cast<uint32_t>(mesh.vertices.size() - 1);
+      if (f % 2 == 0) mesh.vertices.back().color[1] = static_cast<uint8_t>(mesh.vertices.back().color[1] ^ 0x5A);
+    }
+  }
+  return mesh;
+}
+
+// Normals and texture coordinates: near what the shape suggests, some anywhere, some equal.
+QuantizedMesh with_attributes(QuantizedMesh mesh, int normal_bits, int texcoord_bits) {
+  Random random(21);
+  mesh.normal_bits = normal_bits;
+  mesh.texcoord_bits = texcoord_bits;
+  if (texcoord_bits > 0) mesh.texcoord_origin[1] = -0.5f, mesh.texcoord_step = 0.25f;
+  const uint32_t top = normal_bits == 0 ? 0 : (1u << normal_bits) - 2, mask = (1u << texcoord_bits) - 1;
+  for (QuantizedVertex& vertex : mesh.vertices) {
+    for (int i = 0; i < 2; ++i) {
+      const uint32_t kind = random.below(8), any = random.below(65536);
+      vertex.normal[i] = static_cast<uint16_t>(top == 0    ? 0
+                                               : kind == 0 ? any % (top + 1)
+                                               : kind == 1 ? (any & 1) * top
+                                                           : top / 2 + vertex.color[0] * top / 1024);
+      vertex.texcoord[i] = static_cast<uint16_t>((kind == 2 ? any : vertex.position[i] >> 3) & mask);
+    }
+  }
+  return mesh;
+}
+
 QuantizedMesh strip(uint32_t n_vertices) {
   QuantizedMesh mesh;
   for (uint32_t i = 0; i < n_vertices; ++i) add_vertex(mesh, i & 0xFFFF, (i % 2) * 50, i >> 12);
@@ -216,8 +249,11 @@ QuantizedMesh packed(const QuantizedMesh& mesh) {
 }
 
 bool same(const QuantizedMesh& one, const QuantizedMesh& other) {
-  return one.vertices == other.vertices && one.indices == other.indices && one.position_bits == other.position_bits &&
-         std::equal(one.origin, one.origin + 3, other.origin) && std::equal(one.step, one.step + 3, other.step) &&
+  return one.normal_bits == other.normal_bits && one.texcoord_bits == other.texcoord_bits &&
+         std::equal(one.texcoord_origin, one.texcoord_origin + 2, other.texcoord_origin) &&
+         one.texcoord_step == other.texcoord_step && one.vertices == other.vertices && one.indices == other.indices &&
+         one.position_bits == other.position_bits && std::equal(one.origin, one.origin + 3, other.origin) &&
+         std::equal(one.step, one.step + 3, other.step) &&
          std::equal(one.faces.begin(), one.faces.end(), other.faces.begin(), other.faces.end(),
                     [](const Face& a, const Face& b) {
                       return a.first == b.first && a.count == b.count && a.material == b.material;
@@ -303,6 +339,14 @@ std::vector<NamedMesh> mesh_zoo() {
   add("degenerate faces", degenerate());
   add("extremes of 16 bits", extremes(16));
   add("one bit", extremes(1));
+  add("hard edges", with_seams(wave_mesh(12, 9, true), 1));
+  add("some seams", with_seams(wave_mesh(12, 9, false), 5));
+  add("normals and texture", with_attributes(with_seams(wave_mesh(14, 9, true), 7), 10, 12));
+  add("normals and texture on quads", with_attributes(with_seams(wave_mesh(10, 9, false), 6), 16, 16));
+  add("coarsest normals and texture", with_attributes(random_soup(80, 100, 5), 2, 1));
+  add("normals of lone vertices", with_attributes(with_isolated(wave_mesh(4, 4, true), 9), 8, 0));
+  add("texture on degenerate faces", with_attributes(degenerate(), 0, 14));
+  add("equal parts in rows", wave_mesh(3, 400, false));
   add("65535 vertices", strip(65535));
   add("65536 vertices", strip(65536));
   add("65537 vertices", strip(65537));

@@ -1,0 +1,91 @@
+// What the coders of colors, normals and texture coordinates share: one loop over the vertices, contexts from the
+// magnitudes of the neighbors' residuals, and the question whether a vertex is like its sibling across a seam.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geomcodec/attributes.h"
+#include "geomcodec/prediction.h"
+#include "geomcodec/symbol_model.h"
+
+namespace pac::geomcodec {
+
+enum AttributeBasis : uint32_t {
+  kFromPrevious,
+  kFromNeighbors,
+  kFromExtension,
+  kFromOne,
+  kFromTwo,
+  kFromMore,
+  kAttributeBases
+};
+
+inline AttributeBasis attribute_basis(const Stencil& stencil) {
+  if (stencil.extended) return kFromExtension;
+  if (stencil.n_parallelograms > 0)
+    return static_cast<AttributeBasis>(kFromOne + std::min(stencil.n_parallelograms, 3) - 1);
+  return stencil.n_neighbors > 0 ? kFromNeighbors : kFromPrevious;
+}
+
+// Residuals of one component of an attribute.
+struct ComponentModel {
+  ClassModels<kClasses> classes[kAttributeBases];
+  DetailModel details[3];  // by the sign of the residual before in the same vertex
+
+  // scale: mean class of the neighbors' residuals in halves; other: largest class so far in this vertex.
+  template <class Coder>
+  int32_t code(Coder& coder, AttributeBasis basis, uint32_t scale, uint32_t other, int32_t sign_before,
+               int32_t residual) {
+    return code_residual(coder, classes[basis].by_scale[scale], classes[basis].by_other[other],
+                         details[sign_before == 0  ? 0
+                                 : sign_before > 0 ? 1
+                                                   : 2],
+                         residual);
+  }
+};
+
+// Mean of class_at(neighbor) in halves; without neighbors that of the vertex before.
+template <class ClassAt>
+uint32_t mean_class(uint32_t v, const Stencil& stencil, ClassAt class_at) {
+  if (stencil.n_neighbors > 0)
+    return static_cast<uint32_t>(scaled_mean(neighbor_sum(stencil, class_at), stencil.n_neighbors, 1));
+  return v > 0 ? 2 * static_cast<uint32_t>(class_at(v - 1)) : 0;
+}
+
+// "The same as the sibling's" for vertices that have one.
+class SiblingModel {
+ public:
+  template <class Coder>
+  bool code(Coder& coder, bool same) {
+    return last_ = coder.bit(same_[last_ ? 1 : 0], same ? 1 : 0) != 0;
+  }
+
+ private:
+  AdaptiveBit same_[2];
+  bool last_ = true;
+};
+
+// Drives an attribute's coder, a class template with begin(vertices) and code(v, vertices), over all vertices.
+template <class AttributeCoder>
+std::vector<uint8_t> encode_attribute(AttributeCoder& attribute, RangeEncoder& coder,
+                                      std::span<const QuantizedVertex> given) {
+  std::vector<QuantizedVertex> vertices(given.begin(), given.end());
+  attribute.begin(vertices);
+  for (uint32_t v = 0; v < vertices.size(); ++v) attribute.code(v, vertices);
+  return coder.finish();
+}
+template <class AttributeCoder>
+Result<void> decode_attribute(AttributeCoder& attribute, RangeDecoder& coder, std::span<QuantizedVertex> vertices) {
+  attribute.begin(vertices);
+  for (uint32_t v = 0; v < vertices.size(); ++v) {
+    attribute.code(v, vertices);
+    if (coder.failed()) return Failure{Error::corrupt, 0, "vertex attributes end too early"};
+  }
+  if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "vertex attributes do not end where the header says"};
+  return {};
+}
+
+}  // namespace pac::geomcodec
