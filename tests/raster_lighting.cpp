@@ -252,6 +252,31 @@ TEST_CASE("one traversal with full lighting in H and local in L gives the bits o
   }
 }
 
+TEST_CASE("vertices shared by faces, materials and both sides of a surface draw as if each face had its own") {
+  Scene shared = everything();
+  shared.materials.push_back(shared.materials[0]);
+  shared.materials[1].diffuse = {0.2f, 0.7f, 0.9f};
+  shared.materials[1].two_sided = true;
+  for (size_t f = 0; f < shared.mesh.faces.size(); ++f) shared.mesh.faces[f].material = f % 3 == 0 ? 1 : 0;
+  for (size_t v = 0; v < shared.mesh.vertices.size(); v += 7)  // some normals point inwards, some are missing
+    for (float& component : shared.mesh.vertices[v].normal) component = v % 2 == 0 ? -component : 0.0f;
+  Scene split = shared;
+  split.mesh.vertices.clear();
+  for (uint32_t& index : split.mesh.indices) {
+    split.mesh.vertices.push_back(shared.mesh.vertices[index]);
+    index = static_cast<uint32_t>(split.mesh.vertices.size() - 1);
+  }
+  for (const Lighting lighting : {Lighting::local, Lighting::full}) {
+    RenderQuality quality = quality_of(lighting);
+    quality.shading = Shading::gouraud;
+    for (const bool cull : {false, true}) {
+      quality.cull_back_faces = cull;
+      const Camera camera = test_scenes::pin_camera(1.0f);
+      CHECK(hash_pixels(draw(shared, camera, quality).view()) == hash_pixels(draw(split, camera, quality).view()));
+    }
+  }
+}
+
 TEST_CASE("a renderer that is given another mesh, or a moved vertex, casts the new shadows") {
   Scene scene = floor_with_slab();
   auto renderer = Renderer::create(kSize, kSize);
