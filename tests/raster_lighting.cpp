@@ -252,7 +252,9 @@ TEST_CASE("one traversal with full lighting in H and local in L gives the bits o
   }
 }
 
-TEST_CASE("vertices shared by faces, materials and both sides of a surface draw as if each face had its own") {
+TEST_CASE(
+    "vertices shared by faces and materials draw as if each face had its own, and normals as if turned to the eye "
+    "before") {
   Scene shared = everything();
   shared.materials.push_back(shared.materials[0]);
   shared.materials[1].diffuse = {0.2f, 0.7f, 0.9f};
@@ -266,6 +268,9 @@ TEST_CASE("vertices shared by faces, materials and both sides of a surface draw 
     split.mesh.vertices.push_back(shared.mesh.vertices[index]);
     index = static_cast<uint32_t>(split.mesh.vertices.size() - 1);
   }
+  Scene negated = shared;
+  for (Vertex& vertex : negated.mesh.vertices)
+    for (float& component : vertex.normal) component = -component;
   for (const Lighting lighting : {Lighting::local, Lighting::full}) {
     RenderQuality quality = quality_of(lighting);
     quality.shading = Shading::gouraud;
@@ -273,6 +278,7 @@ TEST_CASE("vertices shared by faces, materials and both sides of a surface draw 
       quality.cull_back_faces = cull;
       const Camera camera = test_scenes::pin_camera(1.0f);
       CHECK(hash_pixels(draw(shared, camera, quality).view()) == hash_pixels(draw(split, camera, quality).view()));
+      CHECK(hash_pixels(draw(shared, camera, quality).view()) == hash_pixels(draw(negated, camera, quality).view()));
     }
   }
 }
