@@ -7,22 +7,10 @@
 #include "mpeg1/mpeg1.h"
 #include "mpeg1/predict.h"
 #include "mpeg1/slice_reader.h"
+#include "mpeg1/start_codes.h"
 
 namespace pac::mpeg1 {
 namespace {
-
-constexpr size_t kNotFound = ~size_t{0};
-
-// Of the next 00 00 01 xx at or after `from`, of which all four bytes are there.
-size_t find_start_code(std::span<const uint8_t> bytes, size_t from) {
-  for (size_t at = from + 2; at + 1 < bytes.size(); ++at) {
-    const void* one = std::memchr(bytes.data() + at, 1, bytes.size() - 1 - at);
-    if (one == nullptr) return kNotFound;
-    at = static_cast<size_t>(static_cast<const uint8_t*>(one) - bytes.data());
-    if (bytes[at - 1] == 0 && bytes[at - 2] == 0) return at - 2;
-  }
-  return kNotFound;
-}
 
 // A reference picture, or the one being decoded, in whole macroblocks.
 struct Picture {

@@ -2,17 +2,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/kernels/block_kernels.h"
 #include "base/parallel.h"
 #include "mpeg1/headers.h"
 #include "mpeg1/macroblock_coder.h"
+#include "mpeg1/motion_search.h"
 #include "mpeg1/mpeg1.h"
+#include "mpeg1/rate_control.h"
 #include "mpeg1/slice_writer.h"
+#include "mpeg1/trellis.h"
 
 namespace pac::mpeg1 {
 namespace {
 
 constexpr int kMaxGroupLength = 132;  // no macroblock may be predicted more often [2.4.4.2]
 constexpr int kRowsPerBand = 8;
+constexpr double kCutShare = 0.6;  // of intra macroblocks in a P picture, from which on an I picture serves better
+constexpr double kFastIntraRounding = 0.375;  // of a step: the trellis rounds to nearest and decides itself
+
+// What a bit may cost in squared error, over quantizer_scale squared. At high rate 6 dB a bit and a uniform error of a
+// step (2 quantizer_scale) give 0.46; blocks of few levels want more.
+constexpr double kLambda = 0.85;
 
 bool is_valid(const std::optional<QuantizerMatrix>& matrix) {
   if (!matrix) return true;
@@ -43,8 +53,15 @@ struct Encoder::State {
   const char* problem_with_picture(const Frame420& frame, const PictureOptions& picture) const;
   PictureType choose_type(const PictureOptions& picture) const;
   void start_group(std::vector<uint8_t>& out);
-  double set_quantizers(const PictureOptions& picture);
+  double set_quantizers(const PictureOptions& picture, double scale);
+  PictureReport code_at(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
+  PictureReport code_at_rate(PictureType type, const PictureOptions& picture, std::vector<uint8_t>& out);
+  void account(const PictureReport& report, size_t before, std::vector<uint8_t>& out);
+  void age_macroblocks();
+  void force_intra();
+  void make_lambdas();
   void set_source(const Frame420& frame);
+  void set_rate();
   PictureTask make_task(PictureType type, const PictureOptions& picture);
   void code_picture(const PictureTask& task);
   PictureReport write_picture(PictureType type, std::vector<uint8_t>& out);
@@ -56,7 +73,9 @@ struct Encoder::State {
   int columns, rows;
   SequenceHeader sequence;
   QuantizerSet intra, non_intra;
+  int64_t lambda[32] = {};                               // of each quantizer_scale, see ResidualTask
   Frame420 source, reconstruction, reference, replaced;  // whole macroblocks
+  Planes source_planes;                                  // of `source`, or of the caller's frame during add()
   std::vector<Macroblock> macroblocks;
   std::vector<MotionVector> last_vectors;
   bool has_last_vectors = false;
@@ -64,9 +83,14 @@ struct Encoder::State {
   std::vector<uint8_t> bits_of_difference;
   std::vector<Band> bands;
   std::vector<BandBits> bits;
-  bool in_sequence = false;    // a sequence header was written and no end
-  int64_t picture_count = 0;   // of the sequence, for the time code
-  int temporal_reference = 0;  // of the next picture in its group
+  bool has_rate = false;
+  RateControl rate;
+  size_t header_bytes = 0;      // of the sequence and group headers before the picture being coded
+  std::vector<uint8_t> ages;    // codings of each macroblock since it was intra
+  std::vector<uint8_t> forced;  // must be intra
+  bool in_sequence = false;     // a sequence header was written and no end
+  int64_t picture_count = 0;    // of the sequence, for the time code
+  int temporal_reference = 0;   // of the next picture in its group
 };
 
 Encoder::State::State(const SequenceOptions& o, Isa isa)
@@ -86,12 +110,15 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
   sequence.has_non_intra_matrix = o.non_intra_matrix.has_value();
   sequence.intra_matrix = o.intra_matrix.value_or(kDefaultIntraMatrix);
   sequence.non_intra_matrix = o.non_intra_matrix.value_or(kDefaultNonIntraMatrix);
-  sequence.vbv_buffer_size = o.vbv_buffer_size != 0 ? o.vbv_buffer_size : 1023;
-  make_quantizers(sequence.intra_matrix, kIntraRounding, intra);
-  make_quantizers(sequence.non_intra_matrix, kNonIntraRounding, non_intra);
+  set_rate();
+  make_quantizers(sequence.intra_matrix, o.effort == Effort::fast ? kFastIntraRounding : 0.5, intra);
+  make_quantizers(sequence.non_intra_matrix, 0.0, non_intra);  // reconstruction lies half a step above the level
+  make_lambdas();
   const size_t count = static_cast<size_t>(columns) * static_cast<size_t>(rows);
   macroblocks.resize(count);
   last_vectors.resize(count);
+  ages.resize(count);
+  forced.resize(count);
   quantizers.resize(count);
   const int n_bands = std::max(1, rows / kRowsPerBand);
   bands.resize(static_cast<size_t>(n_bands));
@@ -103,6 +130,38 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
   bits_of_difference.resize(kMaxDifference + 1);
   for (int i = 0; i <= kMaxDifference; ++i)
     bits_of_difference[static_cast<size_t>(i)] = static_cast<uint8_t>(motion_bits(std::min(i, 60), 0, 1));
+}
+
+// The header's rate and buffer: a second of the rate by default; for a fixed quantizer as large as can be said.
+void Encoder::State::set_rate() {
+  has_rate = options.bit_rate_bps > 0;
+  if (has_rate) sequence.bit_rate = static_cast<int>((options.bit_rate_bps + 399) / 400);
+  const int64_t second = int64_t{400} * sequence.bit_rate / 16384;
+  const int fallback = has_rate ? static_cast<int>(std::clamp<int64_t>(second, 4, 1023)) : 1023;
+  sequence.vbv_buffer_size = options.vbv_buffer_size != 0 ? options.vbv_buffer_size : fallback;
+  // 90 kHz ticks of a full buffer must fit vbv_delay's 16 bits.
+  if (has_rate)
+    sequence.vbv_buffer_size = std::max(
+        1,
+        std::min(sequence.vbv_buffer_size, static_cast<int>(int64_t{65000} * 400 * sequence.bit_rate / 90000 / 16384)));
+  if (has_rate && options.vbv_buffer_size == 0) {  // a smaller buffer where that makes the parameters constrained
+    SequenceHeader small = sequence;
+    small.vbv_buffer_size = std::min(small.vbv_buffer_size, 20);
+    if (is_constrained(small)) sequence.vbv_buffer_size = small.vbv_buffer_size;
+  }
+  sequence.constrained_parameters = is_constrained(sequence);
+  if (has_rate)
+    rate = RateControl(int64_t{400} * sequence.bit_rate, int64_t{16384} * sequence.vbv_buffer_size,
+                       kPictureRatesMilli[options.picture_rate_code], options.gop_length, columns * rows);
+}
+
+void Encoder::State::make_lambdas() {
+  double mean = 0;  // of the matrix, where most levels are
+  for (size_t k = 1; k < 16; ++k) mean += sequence.non_intra_matrix[kNaturalFromZigzag[k]] / 15.0;
+  for (int q = 1; q < 32; ++q) {
+    const double step = q * mean / 16;
+    lambda[q] = std::max<int64_t>(1, static_cast<int64_t>(kDistortionScale * kLambda * step * step));
+  }
 }
 
 const char* Encoder::State::problem_with_picture(const Frame420& frame, const PictureOptions& picture) const {
@@ -125,6 +184,13 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
   return nullptr;
 }
 
+// A frame of whole macroblocks is read where it is.
+void Encoder::State::set_source(const Frame420& frame) {
+  source_planes = Planes::of(source);
+  if (frame.width() % 16 != 0 || frame.height() % 16 != 0) return fill_planes(view_of(frame), source_planes);
+  source_planes = Planes::of(const_cast<Frame420&>(frame));  // only read from
+}
+
 PictureType Encoder::State::choose_type(const PictureOptions& picture) const {
   if (!in_sequence && !(picture.type == PictureType::P && picture.reference != nullptr)) return PictureType::I;
   if (picture.type) return *picture.type;
@@ -134,9 +200,9 @@ PictureType Encoder::State::choose_type(const PictureOptions& picture) const {
 void Encoder::State::start_group(std::vector<uint8_t>& out) {
   write_sequence_header(sequence, out);
   GroupHeader group;
-  const int rate = (kPictureRatesMilli[options.picture_rate_code] + 999) / 1000;
-  const int64_t seconds = picture_count / rate;
-  group.pictures = static_cast<int>(picture_count % rate);
+  const int pictures_a_second = (kPictureRatesMilli[options.picture_rate_code] + 999) / 1000;
+  const int64_t seconds = picture_count / pictures_a_second;
+  group.pictures = static_cast<int>(picture_count % pictures_a_second);
   group.seconds = static_cast<int>(seconds % 60);
   group.minutes = static_cast<int>(seconds / 60 % 60);
   group.hours = static_cast<int>(seconds / 3600 % 24);
@@ -146,14 +212,13 @@ void Encoder::State::start_group(std::vector<uint8_t>& out) {
 }
 
 // Between integers the first part of the macroblocks has the smaller quantizer: one change of it in the stream.
-double Encoder::State::set_quantizers(const PictureOptions& picture) {
+double Encoder::State::set_quantizers(const PictureOptions& picture, double scale) {
   if (!picture.quantizer_map.empty()) {
     std::copy(picture.quantizer_map.begin(), picture.quantizer_map.end(), quantizers.begin());
     double sum = 0;
     for (const uint8_t q : quantizers) sum += q;
     return sum / static_cast<double>(quantizers.size());
   }
-  const double scale = picture.quantizer_scale != 0 ? picture.quantizer_scale : options.quantizer_scale;
   const double floor = std::floor(scale);
   const auto finer = static_cast<size_t>((1 - (scale - floor)) * static_cast<double>(quantizers.size()) + 0.5);
   for (size_t i = 0; i < quantizers.size(); ++i)
@@ -161,15 +226,35 @@ double Encoder::State::set_quantizers(const PictureOptions& picture) {
   return scale;
 }
 
+// Long before the limit of 132 codings [2.4.4.2] a macroblock's turn comes: one of kTurns pictures each.
+void Encoder::State::force_intra() {
+  constexpr int kFirstTurn = 90, kTurns = 32;
+  for (size_t i = 0; i < ages.size(); ++i) {
+    const bool has_turn = static_cast<int64_t>(i * 7 % kTurns) == picture_count % kTurns;
+    forced[i] = options.intra_refresh && (ages[i] >= kMaxGroupLength - 2 || (ages[i] >= kFirstTurn && has_turn));
+  }
+}
+
+void Encoder::State::age_macroblocks() {
+  for (size_t i = 0; i < ages.size(); ++i) {
+    if (macroblocks[i].kind == MacroblockKind::intra) ages[i] = 0;
+    if (macroblocks[i].kind == MacroblockKind::inter && ages[i] < 255) ++ages[i];
+  }
+}
+
 PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& picture) {
   PictureTask task;
-  task.kernels = &kernels;
+  task.residual.kernels = &kernels;
+  task.residual.intra = &intra;
+  task.residual.non_intra = &non_intra;
+  task.residual.lambda = lambda;
+  task.residual.choice = options.effort == Effort::fast ? LevelChoice::drop_small : LevelChoice::trellis;
   task.effort = options.effort;
   task.type = type;
   task.columns = columns;
   task.rows = rows;
   task.slice_rows = options.slice_rows != 0 ? std::min(options.slice_rows, rows) : rows;
-  task.source = Planes::of(source);
+  task.source = source_planes;
   task.target = Planes::of(reconstruction);
   task.reference = Planes::of(reference);
   if (type == PictureType::P && picture.reference != nullptr) {
@@ -177,12 +262,11 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     fill_planes(view_of(*picture.reference), Planes::of(replaced));
     task.reference = Planes::of(replaced);
   }
-  task.intra = &intra;
-  task.non_intra = &non_intra;
   task.quantizers = quantizers.data();
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
   task.candidates = picture.candidates.data();
   task.candidates_per_macroblock = picture.candidates_per_macroblock;
+  task.must_be_intra = type == PictureType::P ? forced.data() : nullptr;
   task.bits_of_difference = bits_of_difference.data();
   task.macroblocks = macroblocks.data();
   return task;
@@ -200,6 +284,7 @@ PictureReport Encoder::State::write_picture(PictureType type, std::vector<uint8_
   picture.rows = rows;
   picture.slice_rows = options.slice_rows != 0 ? std::min(options.slice_rows, rows) : rows;
   picture.macroblocks = macroblocks.data();
+  if (has_rate) picture.header.vbv_delay = rate.vbv_delay(static_cast<int64_t>(8 * header_bytes));
   if (type == PictureType::P) picture.header.forward_f_code = needed_f_code(picture);
   write_picture_header(picture.header, out);
   pool.for_each(static_cast<int64_t>(bands.size()),
@@ -219,21 +304,70 @@ void Encoder::State::finish_picture(PictureType type) {
   std::swap(reconstruction, reference);  // the next picture's reference, and what reconstruction() shows
   has_last_vectors = type == PictureType::P;
   for (size_t i = 0; i < macroblocks.size(); ++i) last_vectors[i] = macroblocks[i].vector;
+  age_macroblocks();
   ++temporal_reference;
   ++picture_count;
+}
+
+PictureReport Encoder::State::code_at(PictureType type, const PictureOptions& picture, double scale,
+                                      std::vector<uint8_t>& out) {
+  const double mean = set_quantizers(picture, scale);
+  code_picture(make_task(type, picture));
+  const size_t before = out.size();
+  PictureReport report = write_picture(type, out);
+  report.quantizer_scale = mean;
+  report.size_bytes = out.size() - before;
+  return report;
+}
+
+// Codes the picture until its size suits the rate and the decoder's buffer.
+PictureReport Encoder::State::code_at_rate(PictureType type, const PictureOptions& picture, std::vector<uint8_t>& out) {
+  const size_t before = out.size();
+  double scale = rate.first_quantizer();
+  for (int tries = 1;; ++tries) {
+    const PictureReport report = code_at(type, picture, scale, out);
+    const auto size_bits = static_cast<int64_t>(8 * (report.size_bytes + header_bytes));
+    const double next = rate.next_quantizer(scale, size_bits, tries);
+    if (next == 0) return report;
+    scale = next;
+    out.resize(before);
+  }
+}
+
+// After a picture whose headers began at `before`: zero bytes before the next start code, and the books.
+void Encoder::State::account(const PictureReport& report, size_t before, std::vector<uint8_t>& out) {
+  if (!has_rate) return;
+  const auto size_bits = static_cast<int64_t>(8 * (out.size() - before));
+  const int64_t stuffing = rate.stuffing_bits(size_bits);
+  out.insert(out.end(), static_cast<size_t>(stuffing / 8), 0);
+  rate.finish_picture(report.quantizer_scale, size_bits, size_bits + stuffing);
 }
 
 Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uint8_t>& out,
                                           const PictureOptions& picture) {
   if (const char* problem = problem_with_picture(frame, picture)) return Failure{Error::bad_argument, 0, problem};
   const size_t before = out.size();
-  const PictureType type = choose_type(picture);
-  if (type == PictureType::I || !in_sequence) start_group(out);
-  fill_planes(view_of(frame), Planes::of(source));
-  const double scale = set_quantizers(picture);
-  code_picture(make_task(type, picture));
-  PictureReport report = write_picture(type, out);
-  report.quantizer_scale = scale;
+  set_source(frame);
+  const bool free_quantizer = picture.quantizer_map.empty() && picture.quantizer_scale == 0;
+  PictureType type = choose_type(picture);
+  force_intra();
+  PictureReport report;
+  bool is_new_group = false;  // also when the picture is coded again
+  for (;;) {
+    out.resize(before);
+    const bool starts_group = type == PictureType::I || !in_sequence || is_new_group;
+    is_new_group = starts_group;
+    if (starts_group) start_group(out);
+    header_bytes = out.size() - before;
+    if (has_rate) rate.start_picture(type);
+    const double scale = picture.quantizer_scale != 0 ? picture.quantizer_scale : options.quantizer_scale;
+    report = has_rate && free_quantizer ? code_at_rate(type, picture, out) : code_at(type, picture, scale, out);
+    const bool is_cut = type == PictureType::P && options.scene_cuts && !picture.type &&
+                        report.intra_macroblocks > kCutShare * static_cast<double>(macroblocks.size());
+    if (!is_cut) break;
+    type = PictureType::I;
+  }
+  account(report, before, out);
   report.size_bytes = out.size() - before;
   finish_picture(type);
   return report;
@@ -269,7 +403,10 @@ Result<PictureReport> Encoder::repeat(std::vector<uint8_t>& out) {
       const bool is_last = column == s.columns - 1 && ((row + 1) % slice_rows == 0 || row + 1 == s.rows);
       if (is_first || is_last) macroblock.kind = MacroblockKind::inter;
     }
+  s.header_bytes = 0;
+  if (s.has_rate) s.rate.start_picture(PictureType::P);
   PictureReport report = s.write_picture(PictureType::P, out);
+  s.account(report, before, out);
   report.size_bytes = out.size() - before;
   fill_planes(view_of(s.reference), Planes::of(s.reconstruction));
   s.finish_picture(PictureType::P);

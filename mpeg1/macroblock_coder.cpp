@@ -1,28 +1,22 @@
 #include "mpeg1/macroblock_coder.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
+#include <cstdlib>
+#include <utility>
 
-#include "base/kernels/block_kernels.h"
+#include "mpeg1/motion_search.h"
+#include "mpeg1/trellis.h"
+#include "mpeg1/vlc_tables.h"
 
 namespace pac::mpeg1 {
 namespace {
 
-constexpr int kBlocks = 6;
-alignas(64) constexpr uint8_t kZeros[16] = {};
-
-// The transform of a macroblock and what quantization made of it.
-struct Coefficients {
-  alignas(64) int16_t dct[kBlocks * 64];     // natural order, times 8
-  alignas(64) int16_t levels[kBlocks * 64];  // zigzag order
-  uint64_t nonzero[kBlocks];                 // bit k: level at zigzag position k
-};
+// Bits of macroblock_type in P pictures [table B.2b], address increment of 1 included.
+constexpr int kBitsMotionCoded = 2, kBitsCoded = 3, kBitsMotion = 4, kBitsIntra = 6, kBitsSkipped = 1;
 
 class BandCoder {
  public:
-  BandCoder(const PictureTask& task, Band& band)
-      : task_(task), band_(band), motion_(task.kernels->motion), block_(task.kernels->block) {}
+  BandCoder(const PictureTask& task, Band& band) : task_(task), band_(band), motion_(task.residual.kernels->motion) {}
 
   void code() {
     band_.tokens.clear();
@@ -32,33 +26,35 @@ class BandCoder {
 
  private:
   int address() const { return row_ * task_.columns + column_; }
-  Macroblock& current() const { return task_.macroblocks[address()]; }
-  const uint8_t* source(int plane) const { return task_.source.at(plane, column_, row_); }
+  int quantizer() const { return task_.quantizers[address()]; }
+  int64_t lambda() const { return task_.residual.lambda[quantizer()]; }
+  const uint8_t* source() const { return task_.source.at(0, column_, row_); }
 
   void code_macroblock() {
-    Macroblock& macroblock = current();
-    macroblock = {};
-    macroblock.quantizer = task_.quantizers[address()];
-    macroblock.first_token = static_cast<uint32_t>(band_.tokens.size());
+    task_.macroblocks[address()] = {};
+    for (Attempt& attempt : attempts_) attempt.quantizer = static_cast<uint8_t>(quantizer());
     const bool forced = task_.must_be_intra != nullptr && task_.must_be_intra[address()] != 0;
-    if (task_.type == PictureType::I || forced) return code_intra(macroblock);
-    const SearchResult found = search();
-    if (prefers_intra(found)) return code_intra(macroblock);
-    code_inter(macroblock, found.vector);
+    if (task_.type == PictureType::I || forced) {
+      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
+      take(attempts_[0]);
+    } else if (task_.effort == Effort::fast) {
+      code_fast();
+    } else {
+      code_by_cost();
+    }
   }
 
-  // ---- Decisions ---------------------------------------------------------------------------------------------------
+  // ---- Vectors -----------------------------------------------------------------------------------------------------
 
   MotionVector vector_at(int column, int row) const { return task_.macroblocks[row * task_.columns + column].vector; }
 
   // What the stream predicts the vector from, as far as the band knows.
   MotionVector predicted_vector() const { return column_ > 0 ? vector_at(column_ - 1, row_) : MotionVector{}; }
 
-  SearchResult search() const {
-    MotionVector candidates[24];
+  int collect_candidates(MotionVector* candidates, int capacity) const {
     int n = 0;
     const auto add = [&](MotionVector v) {
-      if (n < 24) candidates[n++] = v;
+      if (n < capacity) candidates[n++] = v;
     };
     for (int i = 0; i < std::min(task_.candidates_per_macroblock, 8); ++i)
       add(task_.candidates[address() * task_.candidates_per_macroblock + i]);
@@ -73,9 +69,14 @@ class BandCoder {
       if (column_ + 1 < task_.columns) add(last[1]);
       if (row_ + 1 < task_.rows) add(last[task_.columns]);
     }
+    return n;
+  }
+
+  SearchResult search() const {
+    MotionVector candidates[16];
     SearchInput input;
     input.kernels = &motion_;
-    input.source = source(0);
+    input.source = source();
     input.source_stride = task_.source.stride[0];
     input.reference = task_.reference;
     input.column = column_;
@@ -83,113 +84,71 @@ class BandCoder {
     input.range = vector_range(task_.reference, column_, row_, task_.f_code);
     input.predicted = predicted_vector();
     input.candidates = candidates;
-    input.n_candidates = n;
-    input.lambda_q4 = 16u * current().quantizer;
+    input.n_candidates = collect_candidates(candidates, 16);
+    input.lambda_q4 = 16u * static_cast<uint32_t>(quantizer());
     input.bits_of_difference = task_.bits_of_difference;
     SearchOptions options;
+    options.good_sad = task_.effort == Effort::fast ? 32u * static_cast<uint32_t>(quantizer()) : 0;
+    options.max_steps = task_.effort == Effort::fast ? 8 : 16;
+    options.hadamard = task_.effort != Effort::fast;
+    options.wide = task_.effort == Effort::best;
     return search_motion(input, options);
   }
 
-  // The prediction error is larger than the macroblock's own variation.
-  bool prefers_intra(const SearchResult& found) const {
-    if (found.sad < 1024) return false;
+  int vector_bits(MotionVector v) const {
+    const MotionVector p = predicted_vector();
+    return task_.bits_of_difference[std::min(std::abs(v.x_halfpel - p.x_halfpel), kMaxDifference)] +
+           task_.bits_of_difference[std::min(std::abs(v.y_halfpel - p.y_halfpel), kMaxDifference)];
+  }
+
+  void predict(MotionVector vector, Attempt& attempt) const {
+    attempt.vector = vector;
+    predict_macroblock(motion_, task_.reference, column_, row_, vector, attempt.prediction.planes(), 0, 0);
+  }
+
+  // ---- Fast: by sums of differences --------------------------------------------------------------------------------
+
+  // error: of the best prediction, squared, about; against the macroblock's own variation, with `bias` in thousandths.
+  bool may_be_intra(uint64_t error, uint64_t bias) const {
     uint32_t sum = 0, sum_of_squares = 0;
-    motion_.moments16(source(0), task_.source.stride[0], &sum, &sum_of_squares);
-    const uint32_t variation = sum_of_squares - static_cast<uint32_t>(static_cast<uint64_t>(sum) * sum / 256);
-    // The squares of the error are at least sad^2 / 256.
-    const uint64_t error = static_cast<uint64_t>(found.sad) * found.sad / 256 * 3 / 2;
-    return error > variation + 256 * 16;
+    motion_.moments16(source(), task_.source.stride[0], &sum, &sum_of_squares);
+    const uint64_t variation = sum_of_squares - static_cast<uint64_t>(sum) * sum / 256;
+    return error * bias > (variation + 256 * 16) * 1000;
   }
 
-  // ---- Coding ------------------------------------------------------------------------------------------------------
-
-  void transform(const Planes& prediction, int column, int row, Coefficients& c) const {
-    for (int half = 0; half < 2; ++half)
-      motion_.fdct_residual(source(0) + 8 * half * task_.source.stride[0], task_.source.stride[0],
-                            prediction.at(0, column, row) + 8 * half * prediction.stride[0], prediction.stride[0], 2,
-                            c.dct + 128 * half);
-    for (const int plane : {1, 2})
-      motion_.fdct_residual(source(plane), task_.source.stride[plane], prediction.at(plane, column, row),
-                            prediction.stride[plane], 1, c.dct + 64 * (3 + plane));
+  // No coefficient of the attempt's prediction error can reach a level. For luma: a coefficient (times 8) is at most
+  // twice its block's sum of differences; with `share` 1 that is certain of the four blocks together, with 2 of four
+  // that share the sum evenly. For chroma: its square is at most 64 times the block's squared error.
+  bool has_no_levels(uint32_t sad, uint32_t share, const Attempt& attempt) const {
+    const uint32_t weight = task_.residual.non_intra->least_weight[quantizer()];
+    if (2 * sad >= share * weight) return false;
+    const MacroblockSamples& p = attempt.prediction;
+    const Planes& s = task_.source;
+    return 64 * motion_.sse(s.at(1, column_, row_), s.stride[1], p.cb, 8, 8, 8) < weight * weight &&
+           64 * motion_.sse(s.at(2, column_, row_), s.stride[2], p.cr, 8, 8, 8) < weight * weight;
   }
-  void transform_intra(Coefficients& c) const {
-    for (int half = 0; half < 2; ++half)
-      motion_.fdct_residual(source(0) + 8 * half * task_.source.stride[0], task_.source.stride[0], kZeros, 0, 2,
-                            c.dct + 128 * half);
-    for (const int plane : {1, 2})
-      motion_.fdct_residual(source(plane), task_.source.stride[plane], kZeros, 0, 1, c.dct + 64 * (3 + plane));
+  // The prediction as it is.
+  void take_without_levels(Attempt& attempt) {
+    attempt.kind = MacroblockKind::inter;
+    attempt.pattern = 0;
+    take(attempt);
   }
 
-  static int largest_level(const Coefficients& c, int first_position) {
-    int largest = 0;
-    for (int block = 0; block < kBlocks; ++block) {
-      uint64_t mask = c.nonzero[block] >> first_position << first_position;
-      for (; mask != 0; mask &= mask - 1) {
-        const int level = c.levels[64 * block + std::countr_zero(mask)];
-        largest = std::max(largest, level < 0 ? -level : level);
-      }
+  void code_fast() {
+    const SearchResult found = search();
+    // The squares of the error sum up to sad^2 / 256 at least.
+    const uint64_t error = static_cast<uint64_t>(found.sad) * found.sad / 256;
+    if (found.sad >= 1024 && may_be_intra(error, 1500)) {
+      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
+    } else {
+      predict(found.vector, attempts_[0]);
+      if (has_no_levels(found.sad, 2, attempts_[0])) return take_without_levels(attempts_[0]);
+      attempt_inter(task_.residual, task_.source, column_, row_, false, attempts_[0]);
     }
-    return largest;
+    take(attempts_[0]);
   }
 
-  // Quantizes at the macroblock's quantizer, or the next one at which every level has a code.
-  void quantize(const QuantizerSet& set, int first_position, Macroblock& macroblock, Coefficients& c) const {
-    for (;; ++macroblock.quantizer) {
-      block_.quantize(c.dct, set.divide[macroblock.quantizer], kBlocks, c.levels, c.nonzero);
-      if (macroblock.quantizer == 31 || largest_level(c, first_position) <= kMaxLevel) break;
-    }
-    for (int16_t& level : c.levels) level = static_cast<int16_t>(std::clamp<int>(level, -kMaxLevel, kMaxLevel));
-  }
-
-  int append_tokens(const int16_t* levels, uint64_t mask, int last_position) {
-    int count = 0;
-    for (; mask != 0; mask &= mask - 1, ++count) {
-      const int position = std::countr_zero(mask);
-      band_.tokens.push_back(make_token(position - last_position - 1, levels[position]));
-      last_position = position;
-    }
-    return count;
-  }
-
-  void place(int block, uint8_t*& samples, ptrdiff_t& stride) const {
-    const int plane = block < 4 ? 0 : block - 3;
-    stride = task_.target.stride[plane];
-    samples = task_.target.at(plane, column_, row_);
-    if (block < 4) samples += (block & 1) * 8 + (block >> 1) * 8 * stride;
-  }
-
-  template <bool kIsIntra>
-  static void dequantize(const int16_t* levels, uint64_t mask, const uint16_t* weight, int16_t* coefficients) {
-    std::memset(coefficients, 0, 128);
-    for (; mask != 0; mask &= mask - 1) {
-      const int position = std::countr_zero(mask);
-      const int level = levels[position], magnitude = level < 0 ? -level : level;
-      const int value = kIsIntra ? reconstruct_intra(magnitude, weight[position])
-                                 : reconstruct_non_intra(magnitude, weight[position]);
-      coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>(level < 0 ? -value : value);
-    }
-  }
-
-  void code_intra(Macroblock& macroblock) {
-    Coefficients c;
-    transform_intra(c);
-    macroblock.kind = MacroblockKind::intra;
-    quantize(*task_.intra, 1, macroblock, c);
-    alignas(64) int16_t coefficients[kBlocks * 64];
-    uint8_t* samples[kBlocks];
-    ptrdiff_t strides[kBlocks];
-    for (int block = 0; block < kBlocks; ++block) {
-      const int dc = std::clamp((c.dct[64 * block] + 32) >> 6, 0, 255);
-      macroblock.dc[block] = static_cast<int16_t>(dc);
-      const uint64_t mask = c.nonzero[block] & ~uint64_t{1};
-      macroblock.counts[block] = static_cast<uint8_t>(append_tokens(c.levels + 64 * block, mask, 0));
-      dequantize<true>(c.levels + 64 * block, mask, task_.intra->weight[macroblock.quantizer],
-                       coefficients + 64 * block);
-      coefficients[64 * block] = static_cast<int16_t>(8 * dc);
-      place(block, samples[block], strides[block]);
-    }
-    motion_.idct_put(coefficients, kBlocks, samples, strides);
-  }
+  // ---- By distortion + lambda * bits -------------------------------------------------------------------------------
 
   // The first and the last macroblock of a slice are never skipped [2.4.4.4].
   bool may_skip() const {
@@ -198,36 +157,114 @@ class BandCoder {
     return !is_first && !is_last;
   }
 
-  void code_inter(Macroblock& macroblock, MotionVector vector) {
-    predict_macroblock(motion_, task_.reference, column_, row_, vector, task_.target);
-    Coefficients c;
-    transform(task_.target, column_, row_, c);
-    quantize(*task_.non_intra, 0, macroblock, c);
-    macroblock.kind = MacroblockKind::inter;
-    macroblock.vector = vector;
-    alignas(64) int16_t coefficients[kBlocks * 64];
-    uint8_t* samples[kBlocks];
-    ptrdiff_t strides[kBlocks];
-    size_t n_coded = 0;
-    for (int block = 0; block < kBlocks; ++block) {
-      const uint64_t mask = c.nonzero[block];
-      if (mask == 0) continue;
-      macroblock.pattern = static_cast<uint8_t>(macroblock.pattern | 32 >> block);
-      macroblock.counts[block] = static_cast<uint8_t>(append_tokens(c.levels + 64 * block, mask, -1));
-      dequantize<false>(c.levels + 64 * block, mask, task_.non_intra->weight[macroblock.quantizer],
-                        coefficients + 64 * n_coded);
-      place(block, samples[n_coded], strides[n_coded]);
-      ++n_coded;
+  int64_t prediction_error(const Attempt& attempt) const {
+    const MacroblockSamples& p = attempt.prediction;
+    const Planes& s = task_.source;
+    int64_t error = motion_.sse(source(), s.stride[0], p.y, 16, 16, 16);
+    error += motion_.sse(s.at(1, column_, row_), s.stride[1], p.cb, 8, 8, 8);
+    error += motion_.sse(s.at(2, column_, row_), s.stride[2], p.cr, 8, 8, 8);
+    return error * kDistortionScale;
+  }
+
+  // Of an inter attempt as it stands, or without its coefficients if that is cheaper.
+  int64_t settle_inter(Attempt& attempt) const {
+    const bool moves = attempt.vector != MotionVector{};
+    const int moving_bits = moves || !may_skip() ? kBitsMotion + vector_bits(attempt.vector) : kBitsSkipped;
+    const int64_t without = prediction_error(attempt) + lambda() * moving_bits;
+    if (attempt.pattern == 0) return without;
+    const int header = moves ? kBitsMotionCoded + vector_bits(attempt.vector) : kBitsCoded;
+    const int bits = attempt.bits + header + kPatternCodes[attempt.pattern].length;
+    const int64_t with = attempt.distortion + lambda() * bits;
+    if (with <= without) return with;
+    attempt.pattern = 0;
+    return without;
+  }
+
+  int64_t intra_cost(const Attempt& attempt) const {
+    int bits = attempt.bits + kBitsIntra;
+    int predictions[3] = {128, 128, 128};
+    if (column_ > 0) {
+      const Macroblock& left = task_.macroblocks[address() - 1];
+      if (left.kind == MacroblockKind::intra)
+        for (const int plane : {0, 1, 2}) predictions[plane] = left.dc[plane + 3];
     }
-    if (n_coded != 0) motion_.idct_add(coefficients, n_coded, samples, strides);
-    if (macroblock.pattern == 0 && vector == MotionVector{} && may_skip()) macroblock.kind = MacroblockKind::skipped;
+    for (int block = 0; block < kBlocks; ++block) {
+      int& prediction = predictions[block < 4 ? 0 : block - 3];
+      const int difference = std::abs(attempt.dc[block] - prediction);
+      prediction = attempt.dc[block];
+      size_t size = 0;
+      while (difference >> size != 0) ++size;
+      bits += (block < 4 ? kDcSizeLuminance[size].length : kDcSizeChrominance[size].length) + static_cast<int>(size);
+    }
+    return attempt.distortion + lambda() * bits;
+  }
+
+  // Tries a vector in the attempt that is not the best one.
+  void try_vector(MotionVector vector) {
+    Attempt& attempt = attempts_[1 - best_];
+    attempt.quantizer = static_cast<uint8_t>(quantizer());
+    predict(vector, attempt);
+    attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
+    keep_if_better(settle_inter(attempt));
+  }
+  void keep_if_better(int64_t cost) {
+    if (cost >= least_) return;
+    least_ = cost;
+    best_ = 1 - best_;
+  }
+
+  // The neighbors of the vector that came out best, by what they really cost.
+  void refine_by_cost() {
+    const MotionVector center = attempts_[best_].vector;
+    const VectorRange range = vector_range(task_.reference, column_, row_, task_.f_code);
+    for (int i = 0; i < 9; ++i) {
+      const int x = center.x_halfpel + i % 3 - 1, y = center.y_halfpel + i / 3 - 1;
+      if (i != 4 && range.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)});
+    }
+  }
+
+  void code_by_cost() {
+    const uint32_t still_sad = motion_.sad16(source(), task_.source.stride[0], task_.reference.at(0, column_, row_),
+                                             task_.reference.stride[0]);
+    if (2 * still_sad < task_.residual.non_intra->least_weight[quantizer()]) {
+      predict({}, attempts_[0]);
+      if (has_no_levels(still_sad, 1, attempts_[0])) return take_without_levels(attempts_[0]);
+    }
+    const SearchResult found = search();
+    least_ = INT64_MAX;
+    best_ = 0;
+    try_vector(found.vector);
+    if (found.vector != MotionVector{} && (task_.effort == Effort::best || still_sad < found.sad * 2)) try_vector({});
+    const MotionVector predicted = predicted_vector();
+    if (task_.effort == Effort::best && predicted != found.vector && predicted != MotionVector{} &&
+        vector_range(task_.reference, column_, row_, task_.f_code).contains(predicted.x_halfpel, predicted.y_halfpel))
+      try_vector(predicted);
+    if (task_.effort == Effort::best) refine_by_cost();
+    const int64_t error = prediction_error(attempts_[best_]) / kDistortionScale;
+    if (may_be_intra(static_cast<uint64_t>(error), task_.effort == Effort::best ? 8000 : 2500)) {
+      Attempt& attempt = attempts_[1 - best_];
+      attempt.quantizer = static_cast<uint8_t>(quantizer());
+      attempt_intra(task_.residual, task_.source, column_, row_, true, attempt);
+      keep_if_better(intra_cost(attempt));
+    }
+    take(attempts_[best_]);
+  }
+
+  void take(const Attempt& attempt) {
+    Macroblock& macroblock = task_.macroblocks[address()];
+    commit(task_.residual, attempt, task_.target, column_, row_, band_.tokens, macroblock);
+    if (macroblock.kind == MacroblockKind::inter && macroblock.pattern == 0 && macroblock.vector == MotionVector{} &&
+        may_skip())
+      macroblock.kind = MacroblockKind::skipped;
   }
 
   const PictureTask& task_;
   Band& band_;
   const MotionKernels& motion_;
-  const BlockKernels& block_;
   int row_ = 0, column_ = 0;
+  Attempt attempts_[2];
+  int best_ = 0;
+  int64_t least_ = 0;
 };
 
 }  // namespace

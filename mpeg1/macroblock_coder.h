@@ -1,4 +1,4 @@
-// Decides, transforms, quantizes and reconstructs the macroblocks of one band, from top to bottom.
+// Decides how each macroblock of a band is coded, from top to bottom, and has residual_coder do it.
 #pragma once
 
 #include <cstdint>
@@ -6,22 +6,19 @@
 
 #include "base/kernels/kernels.h"
 #include "mpeg1/macroblock.h"
-#include "mpeg1/motion_search.h"
 #include "mpeg1/mpeg1.h"
 #include "mpeg1/predict.h"
-#include "mpeg1/quantizer.h"
+#include "mpeg1/residual_coder.h"
 
 namespace pac::mpeg1 {
 
-// What all bands of a picture share. Bands read each other's `last_vectors` only.
+// What all bands of a picture share. Nobody writes but each band its own macroblocks and rows of the target.
 struct PictureTask {
-  const Kernels* kernels = nullptr;
+  ResidualTask residual;
   Effort effort = Effort::normal;
   PictureType type = PictureType::I;
   int columns = 0, rows = 0, slice_rows = 0;
-  Planes source, reference, target;  // target: the reconstruction
-  const QuantizerSet* intra = nullptr;
-  const QuantizerSet* non_intra = nullptr;
+  Planes source, reference, target;            // target: the reconstruction
   const uint8_t* quantizers = nullptr;         // of each macroblock, raster order
   const MotionVector* last_vectors = nullptr;  // of the picture before, or null
   const MotionVector* candidates = nullptr;    // of the caller

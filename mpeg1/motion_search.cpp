@@ -12,6 +12,7 @@ class Search {
 
   SearchResult run() {
     try_candidates();
+    if (best_.sad < options_.good_sad) return best_;
     if (options_.wide) walk(4);
     walk(2);
     refine();
@@ -89,12 +90,22 @@ class Search {
       best_.sad = half_distance(center.x_halfpel, center.y_halfpel);
       best_.cost = best_.sad + bits_cost(center.x_halfpel, center.y_halfpel);
     }
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const int x = center.x_halfpel + dx, y = center.y_halfpel + dy;
-        if ((dx == 0 && dy == 0) || !in_.range.contains(x, y)) continue;
-        accept(x, y, half_distance(x, y));
-      }
+    const auto try_half = [&](int dx, int dy) {
+      const int x = center.x_halfpel + dx, y = center.y_halfpel + dy;
+      if (in_.range.contains(x, y)) accept(x, y, half_distance(x, y));
+    };
+    if (options_.hadamard) {
+      for (int i = 0; i < 9; ++i)
+        if (i != 4) try_half(i % 3 - 1, i / 3 - 1);
+      return;
+    }
+    // The better neighbor to the side, the better one up or down, then the corners beside the best.
+    try_half(-1, 0), try_half(1, 0), try_half(0, -1), try_half(0, 1);
+    const int dx = best_.vector.x_halfpel - center.x_halfpel, dy = best_.vector.y_halfpel - center.y_halfpel;
+    if (dx != 0)
+      try_half(dx, -1), try_half(dx, 1);
+    else if (dy != 0)
+      try_half(-1, dy), try_half(1, dy);
   }
 
   const SearchInput& in_;

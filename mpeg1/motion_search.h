@@ -19,6 +19,7 @@ VectorRange vector_range(const Planes& reference, int column, int row, int f_cod
 
 struct SearchOptions {
   int max_steps = 8;      // of the pattern
+  uint32_t good_sad = 0;  // from which on the search ends
   bool wide = false;      // the eight neighbors at distance 2 too before it, and more
   bool hadamard = false;  // half samples by SATD instead of SAD
 };

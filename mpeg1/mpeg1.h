@@ -92,9 +92,8 @@ struct SequenceOptions {
 
 // What one picture's caller may decide. Everything has a meaning when left out.
 struct PictureOptions {
-  // I or P; absent: by gop_length (and scene_cuts). The first picture is I whatever this says, unless it is P
-  // with a reference of the caller's. An I picture starts a
-  // new group of pictures.
+  // I or P; absent: by gop_length (and scene_cuts). The first picture is I whatever this says, unless it is P with a
+  // reference of the caller's. An I picture starts a new group of pictures.
   std::optional<PictureType> type;
   // Predict a P picture from this instead of the last reconstruction: same size as the sequence. The decoder must be
   // given the same samples (DecoderOptions::reference). Borrowed for the call.

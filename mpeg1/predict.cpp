@@ -43,14 +43,34 @@ void predict_block(const MotionKernels& kernels, const uint8_t* plane, ptrdiff_t
   predict[kind](patch.samples, kPatchStride, target, target_stride, place.size);
 }
 
+// A few units of a fixed size: without the call that a size unknown to the compiler takes.
+constexpr int kLongRun = 8;
+template <int kBytes>
+void copy_units(const uint8_t* from, uint8_t* to, int count) {
+  for (int i = 0; i < count; ++i) std::memcpy(to + i * kBytes, from + i * kBytes, kBytes);
+}
+
 }  // namespace
 
 void predict_macroblock(const MotionKernels& kernels, const Planes& reference, int column, int row, MotionVector vector,
                         const Planes& target, int target_column, int target_row) {
+  const MotionVector chroma = chroma_vector(vector);
+  const int left = 16 * column + (vector.x_halfpel >> 1), top = 16 * row + (vector.y_halfpel >> 1);
+  const int half_x = vector.x_halfpel & 1, half_y = vector.y_halfpel & 1;
+  if (left >= 0 && top >= 0 && left + 16 + half_x <= reference.width && top + 16 + half_y <= reference.height) {
+    // Half the vector, toward zero, from half the position: chroma is inside, too.
+    kernels.predict16[half_x + 2 * half_y](reference.data[0] + top * reference.stride[0] + left, reference.stride[0],
+                                           target.at(0, target_column, target_row), target.stride[0], 16);
+    const ptrdiff_t x = 8 * column + (chroma.x_halfpel >> 1), y = 8 * row + (chroma.y_halfpel >> 1);
+    const int kind = (chroma.x_halfpel & 1) + 2 * (chroma.y_halfpel & 1);
+    for (const int plane : {1, 2})
+      kernels.predict8[kind](reference.data[plane] + y * reference.stride[plane] + x, reference.stride[plane],
+                             target.at(plane, target_column, target_row), target.stride[plane], 8);
+    return;
+  }
   predict_block(kernels, reference.data[0], reference.stride[0],
                 {16 * column, 16 * row, 16, reference.width, reference.height}, vector,
                 target.at(0, target_column, target_row), target.stride[0]);
-  const MotionVector chroma = chroma_vector(vector);
   for (const int plane : {1, 2})
     predict_block(kernels, reference.data[plane], reference.stride[plane],
                   {8 * column, 8 * row, 8, reference.width / 2, reference.height / 2}, chroma,
@@ -74,8 +94,16 @@ void copy_macroblocks(const Planes& reference, int column, int row, int count, c
     const int size = plane == 0 ? 16 : 8;
     const uint8_t* from = reference.at(plane, column, row);
     uint8_t* to = target.at(plane, column, row);
-    for (int y = 0; y < size; ++y)
-      std::memcpy(to + y * target.stride[plane], from + y * reference.stride[plane], static_cast<size_t>(size * count));
+    for (int y = 0; y < size; ++y) {
+      if (count > kLongRun)
+        std::memcpy(to, from, static_cast<size_t>(size * count));
+      else if (size == 16)
+        copy_units<16>(from, to, count);
+      else
+        copy_units<8>(from, to, count);
+      from += reference.stride[plane];
+      to += target.stride[plane];
+    }
   }
 }
 

@@ -8,16 +8,17 @@
 
 namespace pac::mpeg1 {
 
-constexpr int kMaxLevel = 255;             // |level| that the escape codes [table B.5f]
-constexpr int kMinMatrixEntry = 3;         // the encoder's: smaller divisors do not fit BlockQuantizer
-constexpr double kIntraRounding = 0.375;   // of a step, added before the division: less than 1/2 saves bits
-constexpr double kNonIntraRounding = 0.0;  // reconstruction lies half a step above the level
+constexpr int kMaxLevel = 255;      // |level| that the escape codes [table B.5f]
+constexpr int kMinMatrixEntry = 3;  // the encoder's: smaller divisors do not fit BlockQuantizer
 
 // One matrix at every quantizer_scale.
 struct QuantizerSet {
   BlockQuantizer divide[32];  // of coefficients scaled by 8: |level| = (|c| + bias) / (quantizer_scale * entry)
   uint16_t weight[32][64];    // quantizer_scale * entry, zigzag order
+  uint16_t least_weight[32];  // of the 64
+  bool may_overflow[32];      // an AC level above kMaxLevel is possible
 };
+// rounding: of a step, added before the division.
 void make_quantizers(const QuantizerMatrix& matrix, double rounding, QuantizerSet& set);
 
 // |coefficient| that a decoder makes of |level| >= 1 with quantizer_scale * entry = weight.

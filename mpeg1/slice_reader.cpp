@@ -1,6 +1,7 @@
 #include "mpeg1/slice_reader.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/kernels/block_kernels.h"
@@ -19,6 +20,11 @@ MotionVector full_pel(MotionVector vector, bool doubled) {
 void fill_block(int value, uint8_t* samples, ptrdiff_t stride) {
   const auto sample = static_cast<uint8_t>(std::clamp(value, 0, 255));
   for (int y = 0; y < 8; ++y) std::memset(samples + y * stride, sample, 8);
+}
+
+// A size that the compiler knows, block by block.
+void clear_blocks(int16_t* coefficients, size_t n_blocks) {
+  for (size_t i = 0; i < n_blocks; ++i) std::memset(coefficients + 64 * i, 0, 128);
 }
 
 }  // namespace
@@ -167,13 +173,14 @@ template <bool kIsIntra>
 int SliceReader::read_coefficients(const uint16_t* scaled, int position, int16_t* coefficients) {
   UnitReader bits = bits_;  // a copy in registers
   const auto store = [&](int level) {
-    const int magnitude = level < 0 ? -level : level;
+    const int magnitude = std::abs(level);
     const int weight = scaled[position];
     int value = kIsIntra ? magnitude * weight >> 3 : (2 * magnitude + 1) * weight >> 4;
     const int is_nonzero = value != 0;
     value = (value - is_nonzero) | is_nonzero;  // even values move toward zero
-    const int signed_value = level < 0 ? std::max(-value, -2048) : std::min(value, 2047);
-    coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>(signed_value);
+    const int sign = level >> 31;               // -1 or 0
+    value = std::min(value, 2047 - sign);
+    coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>((value ^ sign) - sign);
   };
   bits.refill();
   if (!kIsIntra && bits.peek(1) != 0) {  // dct_coeff_first: '1s' is run 0, level 1
@@ -238,7 +245,7 @@ bool SliceReader::read_intra_blocks() {
     good = last > 0;
   }
   if (good) picture_.kernels->idct_put(pending_.coefficients, pending_.count, pending_.samples, pending_.strides);
-  std::memset(pending_.coefficients, 0, 2 * 64 * pending_.count);
+  clear_blocks(pending_.coefficients, pending_.count);
   return good;
 }
 
@@ -262,7 +269,7 @@ bool SliceReader::read_coded_blocks(int pattern) {
     good = last > 0 || (error_ == nullptr && fail("coded block without coefficients"));
   }
   if (good) picture_.kernels->idct_add(pending_.coefficients, pending_.count, pending_.samples, pending_.strides);
-  std::memset(pending_.coefficients, 0, 2 * 64 * pending_.count);
+  clear_blocks(pending_.coefficients, pending_.count);
   return good;
 }
 

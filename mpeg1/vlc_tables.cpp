@@ -144,7 +144,12 @@ constexpr ReadingTables make_reading_tables() {
 
 constexpr WritingTables make_writing_tables() {
   WritingTables tables{};
-  for (const RunLevelCode& entry : kRunLevelCodes) tables.run_level[entry.run][entry.level] = entry.code;
+  for (auto& row : tables.bits)
+    for (uint8_t& bits : row) bits = 20;
+  for (const RunLevelCode& entry : kRunLevelCodes) {
+    tables.run_level[entry.run][entry.level] = entry.code;
+    tables.bits[entry.run][entry.level] = static_cast<uint8_t>(entry.code.length + 1);
+  }
   return tables;
 }
 

@@ -75,19 +75,18 @@ extern const ReadingTables kReading;
 
 // ---- For writing ---------------------------------------------------------------------------------------------------
 
-// The code with its sign bit for run 0..63 and |level| 1..255, escapes included.
 struct WritingTables {
-  // [run][|level|]: code without sign in the high bits, 0 length where only the escape serves.
+  // [run][|level|]: code without sign; length 0 where only the escape serves.
   std::array<std::array<Code, kMaxTableLevel + 1>, kMaxTableRun + 1> run_level;
+  // Bits of dct_coeff_next with the sign or the escape.
+  std::array<std::array<uint8_t, kMaxTableLevel + 1>, kMaxTableRun + 1> bits;
 };
 extern const WritingTables kWriting;
 
 // Bits of dct_coeff_next for run and |level| >= 1, sign included [2.4.3.7].
 inline int run_level_bits(int run, int level) {
-  if (run <= kMaxTableRun && level <= kMaxTableLevel) {
-    const Code& code = kWriting.run_level[static_cast<size_t>(run)][static_cast<size_t>(level)];
-    if (code.length != 0) return code.length + 1;
-  }
+  if (run <= kMaxTableRun && level <= kMaxTableLevel)
+    return kWriting.bits[static_cast<size_t>(run)][static_cast<size_t>(level)];
   return level < 128 ? 20 : 28;
 }
 

@@ -24,6 +24,15 @@ f 4 3 5
 f 1 4 5
 OBJ
 
+# And a clip: four gray frames of 32x16.
+{
+  printf 'YUV4MPEG2 W32 H16 F25:1 C420jpeg\n'
+  for _ in 1 2 3 4; do
+    printf 'FRAME\n'
+    head -c 768 /dev/zero | tr '\0' '\200'
+  done
+} >clip.y4m
+
 n=0
 while IFS= read -r name; do
   example=$(pac $name --help | sed -n '/^example:$/{n;s/^  //;p}')
@@ -32,5 +41,5 @@ while IFS= read -r name; do
   bash -c "$example" >output 2>&1 || { cat output; echo "failed: $example"; exit 1; }
   n=$((n + 1))
 done < <(pac --help | sed -n 's/^  \([a-z][a-z ]*[a-z]\)  .*/\1/p')
-[ "$n" -ge 12 ] || { echo "only $n examples were found"; exit 1; }
+[ "$n" -ge 15 ] || { echo "only $n examples were found"; exit 1; }
 echo "$n examples ran"

@@ -7,6 +7,8 @@
 
 #include "base/kernels/motion_kernels.h"
 
+#define PAC_INLINE inline __attribute__((always_inline))
+
 namespace pac {
 namespace {
 
@@ -21,7 +23,7 @@ struct Block {
   __m256i v[8];
 };
 
-Block transpose(const Block& b) {
+PAC_INLINE Block transpose(const Block& b) {
   const __m256i a0 = _mm256_unpacklo_epi16(b.v[0], b.v[1]), a1 = _mm256_unpackhi_epi16(b.v[0], b.v[1]);
   const __m256i a2 = _mm256_unpacklo_epi16(b.v[2], b.v[3]), a3 = _mm256_unpackhi_epi16(b.v[2], b.v[3]);
   const __m256i a4 = _mm256_unpacklo_epi16(b.v[4], b.v[5]), a5 = _mm256_unpackhi_epi16(b.v[4], b.v[5]);
@@ -37,7 +39,7 @@ Block transpose(const Block& b) {
 }
 
 // Sums and differences of rows at a distance of 1, 2, 4: the Hadamard transform down the columns.
-void hadamard(Block& b) {
+PAC_INLINE void hadamard(Block& b) {
   for (int half = 1; half < 8; half *= 2)
     for (int i = 0; i < 8; ++i) {
       if ((i & half) != 0) continue;
@@ -62,11 +64,11 @@ Wide operator-(const Wide& a, const Wide& b) {
 struct Pairs {
   __m256i low, high;
 };
-Pairs interleave(__m256i a, __m256i b) {
+PAC_INLINE Pairs interleave(__m256i a, __m256i b) {
   return {_mm256_unpacklo_epi16(a, b), _mm256_unpackhi_epi16(a, b)};
 }
 // a * ca + b * cb of the interleaved a and b; exact: both factors are 16-bit.
-Wide multiply(const Pairs& ab, int ca, int cb) {
+PAC_INLINE Wide multiply(const Pairs& ab, int ca, int cb) {
   const __m256i factors =
       _mm256_set1_epi32(static_cast<int>(static_cast<uint32_t>(cb) << 16 | (static_cast<uint32_t>(ca) & 0xFFFF)));
   return {_mm256_madd_epi16(ab.low, factors), _mm256_madd_epi16(ab.high, factors)};
@@ -74,7 +76,7 @@ Wide multiply(const Pairs& ab, int ca, int cb) {
 
 // (x + 2^(s-1)) >> s, saturated to 16 bits.
 template <int kShift>
-__m256i round_shift(const Wide& x) {
+PAC_INLINE __m256i round_shift(const Wide& x) {
   const __m256i half = _mm256_set1_epi32(1 << (kShift - 1));
   return _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(x.low, half), kShift),
                             _mm256_srai_epi32(_mm256_add_epi32(x.high, half), kShift));
@@ -82,7 +84,7 @@ __m256i round_shift(const Wide& x) {
 
 // One dimension, forward. First pass: one bit of fraction stays; second: it goes.
 template <bool kIsFirst>
-void fdct_1d(Block& x) {
+PAC_INLINE void fdct_1d(Block& x) {
   constexpr int kShift = kIsFirst ? 12 : 14;
   const __m256i sum07 = _mm256_add_epi16(x.v[0], x.v[7]), difference07 = _mm256_sub_epi16(x.v[0], x.v[7]);
   const __m256i sum16 = _mm256_add_epi16(x.v[1], x.v[6]), difference16 = _mm256_sub_epi16(x.v[1], x.v[6]);
@@ -113,7 +115,7 @@ void fdct_1d(Block& x) {
 
 // One dimension, inverse: columns round away 10 bits, rows 19. The 16-bit additions saturate, as the contract says.
 template <int kShift>
-void idct_1d(Block& x) {
+PAC_INLINE void idct_1d(Block& x) {
   const Pairs even26 = interleave(x.v[2], x.v[6]);
   const Wide even2 = multiply(even26, k0_541 + k0_765, k0_541), even3 = multiply(even26, k0_541, k0_541 - k1_847);
   const auto shift_left_13 = [](__m256i v) {
@@ -136,6 +138,44 @@ void idct_1d(Block& x) {
   x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
   x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
   x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+}
+// The same where rows 4 to 7 of the input are zero: sums with them vanish, so that their products do.
+template <int kShift>
+PAC_INLINE void idct_1d_half(Block& x) {
+  const __m256i zero = _mm256_setzero_si256();
+  const Pairs two = interleave(x.v[2], zero);
+  const Wide even2 = multiply(two, k0_541 + k0_765, 0), even3 = multiply(two, k0_541, 0);
+  const Wide even0{_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, x.v[0]), 3),
+                   _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, x.v[0]), 3)};
+  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even0 + even3, a2 = even0 - even3;
+  const Pairs odd = interleave(x.v[1], x.v[3]);
+  const Wide b0 = multiply(odd, k1_175 - k0_899, k1_175 - k1_961);
+  const Wide b1 = multiply(odd, k1_175 - k0_390, k1_175 - k2_562);
+  const Wide b2 = multiply(odd, k1_175, k3_072 - k2_562 + k1_175 - k1_961);
+  const Wide b3 = multiply(odd, k1_501 - k0_899 + k1_175 - k0_390, k1_175);
+  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
+  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
+  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
+  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+}
+
+bool lower_half_is_zero(const Block& b) {
+  const __m256i rows = _mm256_or_si256(_mm256_or_si256(b.v[4], b.v[5]), _mm256_or_si256(b.v[6], b.v[7]));
+  return _mm256_testz_si256(rows, rows) != 0;
+}
+
+// Columns, then rows.
+PAC_INLINE void idct_2d(Block& b) {
+  if (lower_half_is_zero(b))
+    idct_1d_half<10>(b);
+  else
+    idct_1d<10>(b);
+  b = transpose(b);
+  if (lower_half_is_zero(b))
+    idct_1d_half<19>(b);
+  else
+    idct_1d<19>(b);
+  b = transpose(b);
 }
 
 __m256i join(__m128i first, __m128i second) {
@@ -196,10 +236,7 @@ void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples,
     Block block;
     for (size_t y = 0; y < 8; ++y)
       block.v[y] = join(load(coefficients + 64 * i + 8 * y), load(coefficients + 64 * second + 8 * y));
-    idct_1d<10>(block);
-    block = transpose(block);
-    idct_1d<19>(block);
-    block = transpose(block);
+    idct_2d(block);
     for (int y = 0; y < 8; ++y) {
       uint8_t* p = samples[i] + y * strides[i];
       uint8_t* q = samples[second] + y * strides[second];

@@ -1,0 +1,183 @@
+#include "mpeg1/residual_coder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/kernels/block_kernels.h"
+#include "mpeg1/trellis.h"
+
+namespace pac::mpeg1 {
+namespace {
+
+alignas(64) constexpr uint8_t kZeros[16] = {};
+
+void transform(const MotionKernels& kernels, const Planes& source, int column, int row, const Planes& prediction,
+               int16_t* dct) {
+  for (int half = 0; half < 2; ++half)
+    kernels.fdct_residual(source.at(0, column, row) + 8 * half * source.stride[0], source.stride[0],
+                          prediction.data[0] + 8 * half * prediction.stride[0], prediction.stride[0], 2,
+                          dct + 128 * half);
+  for (const int plane : {1, 2})
+    kernels.fdct_residual(source.at(plane, column, row), source.stride[plane], prediction.data[plane],
+                          prediction.stride[plane], 1, dct + 64 * (3 + plane));
+}
+
+int largest_level(const Attempt& attempt, int first_position) {
+  int largest = 0;
+  for (int block = 0; block < kBlocks; ++block)
+    for (uint64_t mask = attempt.nonzero[block] >> first_position << first_position; mask != 0; mask &= mask - 1) {
+      const int level = attempt.levels[64 * block + std::countr_zero(mask)];
+      largest = std::max(largest, level < 0 ? -level : level);
+    }
+  return largest;
+}
+
+// Divides at the attempt's quantizer, or the next one at which every level has a code.
+void divide(const BlockKernels& kernels, const QuantizerSet& set, int first_position, Attempt& attempt) {
+  for (;; ++attempt.quantizer) {
+    kernels.quantize(attempt.dct, set.divide[attempt.quantizer], kBlocks, attempt.levels, attempt.nonzero);
+    if (!set.may_overflow[attempt.quantizer] || largest_level(attempt, first_position) <= kMaxLevel) return;
+    if (attempt.quantizer == 31) break;
+  }
+  for (int16_t& level : attempt.levels) level = static_cast<int16_t>(std::clamp<int>(level, -kMaxLevel, kMaxLevel));
+}
+
+// Chooses the levels of one block.
+BlockCost choose_levels(const ResidualTask& task, const BlockToQuantize& block, bool with_cost, int16_t* levels,
+                        uint64_t& nonzero) {
+  if (nonzero == 0) {
+    BlockCost nothing;
+    if (with_cost) nothing.distortion = energy(block);
+    nothing.bits = block.is_intra ? 2 : 0;
+    return nothing;
+  }
+  if (task.choice == LevelChoice::trellis) return quantize_trellis(block, levels, nonzero);
+  drop_small_levels(block, levels, nonzero);
+  return with_cost ? cost_of(block, levels, nonzero) : BlockCost{};
+}
+
+void place(int block, const Planes& target, int column, int row, uint8_t*& samples, ptrdiff_t& stride) {
+  const int plane = block < 4 ? 0 : block - 3;
+  stride = target.stride[plane];
+  samples = target.at(plane, column, row);
+  if (block < 4) samples += (block & 1) * 8 + (block >> 1) * 8 * stride;
+}
+
+template <bool kIsIntra>
+void dequantize(const int16_t* levels, uint64_t mask, const uint16_t* weight, int16_t* coefficients) {
+  std::memset(coefficients, 0, 128);
+  for (; mask != 0; mask &= mask - 1) {
+    const int position = std::countr_zero(mask);
+    const int level = levels[position], magnitude = level < 0 ? -level : level;
+    const int value =
+        kIsIntra ? reconstruct_intra(magnitude, weight[position]) : reconstruct_non_intra(magnitude, weight[position]);
+    coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>(level < 0 ? -value : value);
+  }
+}
+
+int append_tokens(const int16_t* levels, uint64_t mask, int last_position, std::vector<Token>& tokens) {
+  Token made[64];
+  int count = 0;
+  for (; mask != 0; mask &= mask - 1) {
+    const int position = std::countr_zero(mask);
+    made[count++] = make_token(position - last_position - 1, levels[position]);
+    last_position = position;
+  }
+  tokens.insert(tokens.end(), made, made + count);
+  return count;
+}
+
+void copy_prediction(const MacroblockSamples& prediction, const Planes& target, int column, int row) {
+  for (int y = 0; y < 16; ++y) std::memcpy(target.at(0, column, row) + y * target.stride[0], prediction.y + 16 * y, 16);
+  for (int y = 0; y < 8; ++y) {
+    std::memcpy(target.at(1, column, row) + y * target.stride[1], prediction.cb + 8 * y, 8);
+    std::memcpy(target.at(2, column, row) + y * target.stride[2], prediction.cr + 8 * y, 8);
+  }
+}
+
+}  // namespace
+
+void attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt) {
+  attempt.kind = MacroblockKind::intra;
+  attempt.vector = {};
+  attempt.pattern = 0;
+  attempt.distortion = 0;
+  attempt.bits = 0;
+  const Planes nothing = {
+      {const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros)}, {0, 0, 0}, 16, 16};
+  transform(task.kernels->motion, source, column, row, nothing, attempt.dct);
+  divide(task.kernels->block, *task.intra, 1, attempt);
+  BlockToQuantize block;
+  block.weight = task.intra->weight[attempt.quantizer];
+  block.lambda = task.lambda[attempt.quantizer];
+  block.first_position = 1;
+  block.is_intra = true;
+  for (int i = 0; i < kBlocks; ++i) {
+    block.dct = attempt.dct + 64 * i;
+    const int dc = std::clamp((block.dct[0] + 32) >> 6, 0, 255);
+    attempt.dc[i] = static_cast<int16_t>(dc);
+    attempt.nonzero[i] &= ~uint64_t{1};
+    const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
+    const int64_t dc_error = block.dct[0] - 64 * dc;
+    attempt.distortion += cost.distortion + dc_error * dc_error;
+    attempt.bits += cost.bits;
+  }
+}
+
+void attempt_inter(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt) {
+  attempt.kind = MacroblockKind::inter;
+  attempt.pattern = 0;
+  attempt.distortion = 0;
+  attempt.bits = 0;
+  transform(task.kernels->motion, source, column, row, attempt.prediction.planes(), attempt.dct);
+  divide(task.kernels->block, *task.non_intra, 0, attempt);
+  BlockToQuantize block;
+  block.weight = task.non_intra->weight[attempt.quantizer];
+  block.lambda = task.lambda[attempt.quantizer];
+  for (int i = 0; i < kBlocks; ++i) {
+    block.dct = attempt.dct + 64 * i;
+    const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
+    if (attempt.nonzero[i] != 0) attempt.pattern = static_cast<uint8_t>(attempt.pattern | 32 >> i);
+    attempt.distortion += cost.distortion;
+    attempt.bits += cost.bits;
+  }
+}
+
+void commit(const ResidualTask& task, const Attempt& attempt, const Planes& target, int column, int row,
+            std::vector<Token>& tokens, Macroblock& macroblock) {
+  const bool is_intra = attempt.kind == MacroblockKind::intra;
+  macroblock.kind = attempt.kind;
+  macroblock.vector = attempt.vector;
+  macroblock.pattern = attempt.pattern;
+  macroblock.quantizer = attempt.quantizer;
+  macroblock.first_token = static_cast<uint32_t>(tokens.size());
+  if (!is_intra) copy_prediction(attempt.prediction, target, column, row);
+  alignas(64) int16_t coefficients[kBlocks * 64];
+  uint8_t* samples[kBlocks];
+  ptrdiff_t strides[kBlocks];
+  size_t n = 0;
+  for (int block = 0; block < kBlocks; ++block) {
+    if (!is_intra && (attempt.pattern & 32 >> block) == 0) continue;
+    const int16_t* levels = attempt.levels + 64 * block;
+    const uint64_t mask = attempt.nonzero[block];
+    macroblock.counts[block] = static_cast<uint8_t>(append_tokens(levels, mask, is_intra ? 0 : -1, tokens));
+    if (is_intra) {
+      macroblock.dc[block] = attempt.dc[block];
+      dequantize<true>(levels, mask, task.intra->weight[attempt.quantizer], coefficients + 64 * n);
+      coefficients[64 * n] = static_cast<int16_t>(8 * attempt.dc[block]);
+    } else {
+      dequantize<false>(levels, mask, task.non_intra->weight[attempt.quantizer], coefficients + 64 * n);
+    }
+    place(block, target, column, row, samples[n], strides[n]);
+    ++n;
+  }
+  if (is_intra)
+    task.kernels->motion.idct_put(coefficients, n, samples, strides);
+  else if (n != 0)
+    task.kernels->motion.idct_add(coefficients, n, samples, strides);
+}
+
+}  // namespace pac::mpeg1

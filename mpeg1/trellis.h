@@ -1,0 +1,40 @@
+// Quantization with an eye on the bits: which levels of a block are worth what they cost.
+#pragma once
+
+#include <cstdint>
+
+#include "mpeg1/quantizer.h"
+
+namespace pac::mpeg1 {
+
+// Distortions are squared errors of coefficients scaled by 8, so 64 times those of samples; lambda is in their units a
+// bit.
+constexpr int64_t kDistortionScale = 64;
+
+struct BlockToQuantize {
+  const int16_t* dct;      // natural order, times 8
+  const uint16_t* weight;  // quantizer_scale * entry, zigzag order
+  int first_position = 0;  // 1 for intra blocks: DC is none of our business
+  bool is_intra = false;
+  int64_t lambda = 0;
+};
+
+struct BlockCost {
+  int64_t distortion = 0;  // of positions from first_position on
+  int bits = 0;            // of the coefficients and end_of_block; 0 where nothing is left
+};
+
+// Squared error of all positions if nothing is coded.
+int64_t energy(const BlockToQuantize& block);
+
+// In: rounded levels (zigzag) with the mask of nonzero ones. Out: the levels, no larger, that minimize distortion +
+// lambda * bits over all choices of each level, the next smaller one or zero. Dynamic programming over positions.
+BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
+
+// One pass: levels of 1 that cost more than they save become zero.
+void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
+
+// What these levels cost.
+BlockCost cost_of(const BlockToQuantize& block, const int16_t* levels, uint64_t nonzero);
+
+}  // namespace pac::mpeg1

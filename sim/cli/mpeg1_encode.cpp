@@ -1,0 +1,112 @@
+// `pac mpeg1 encode`.
+#include <cstdio>
+
+#include "base/y4m.h"
+#include "mpeg1/mpeg1.h"
+#include "mpeg1/system.h"
+#include "sim/cli/command.h"
+
+namespace pac::cli {
+namespace {
+
+struct EncodeSettings {
+  std::string in, out;
+  mpeg1::SequenceOptions sequence;
+  int bit_rate_bps = 0;
+};
+
+// The nearest code that is not slower, or the fastest.
+int rate_code(const Y4mHeader& header) {
+  if (header.rate_denominator == 0) return 5;
+  const int64_t milli = (int64_t{header.rate_numerator} * 1000 + header.rate_denominator / 2) / header.rate_denominator;
+  return mpeg1::picture_rate_code(static_cast<int>(std::min<int64_t>(milli, 60000)));
+}
+
+// How often each frame is shown so that a clip slower than any legal picture_rate keeps its duration: picture
+// `n_written` is due before the frame after `n_frames` of them.
+bool is_behind(uint64_t n_written, uint64_t n_frames, const Y4mHeader& header, int code) {
+  if (header.rate_numerator == 0 || header.rate_denominator == 0) return false;
+  const double seconds = static_cast<double>(n_frames) * header.rate_denominator / header.rate_numerator;
+  return static_cast<double>(n_written) + 0.5 < seconds * mpeg1::kPictureRatesMilli[code] / 1000;
+}
+
+int print_summary(const Options& options, const EncodeSettings& settings, uint64_t frames, uint64_t repeated,
+                  uint64_t bytes) {
+  if (!options.json) return kDone;
+  sim::JsonWriter json;
+  json.begin_object();
+  json.field("width", settings.sequence.width);
+  json.field("height", settings.sequence.height);
+  json.field("frames", frames);
+  json.field("repeated_pictures", repeated);
+  json.field("bytes", bytes);
+  json.end_object();
+  return print_json(json);
+}
+
+int encode(const Options& options, EncodeSettings settings) {
+  const auto bytes = read_file(settings.in);
+  if (!bytes.ok()) return data_error(settings.in, bytes.failure());
+  auto reader = Y4mReader::open(*bytes);
+  if (!reader.ok()) return data_error(settings.in, reader.failure());
+  settings.sequence.width = reader->header().width;
+  settings.sequence.height = reader->header().height;
+  settings.sequence.picture_rate_code = rate_code(reader->header());
+  settings.sequence.bit_rate_bps = settings.bit_rate_bps;
+  settings.sequence.threads = options.threads;
+  auto encoder = mpeg1::Encoder::create(settings.sequence, options.isa);
+  if (!encoder.ok()) return data_error(settings.in, encoder.failure());
+  std::vector<uint8_t> out;
+  uint64_t frames = 0, repeated = 0;
+  Progress progress(options.quiet || options.json);
+  for (Frame420 frame;;) {
+    const auto more = reader->next(frame);
+    if (!more.ok()) return data_error(settings.in, more.failure());
+    if (!*more) break;
+    const auto report = encoder->add(frame, out);
+    if (!report.ok()) return data_error(settings.in, report.failure());
+    ++frames;
+    for (; is_behind(frames + repeated, frames, reader->header(), settings.sequence.picture_rate_code); ++repeated)
+      if (const auto again = encoder->repeat(out); !again.ok()) return data_error(settings.in, again.failure());
+    const double bytes_a_frame = static_cast<double>(settings.sequence.width) * settings.sequence.height * 1.5;
+    progress.show(std::min(1.0, static_cast<double>(frames) * bytes_a_frame / static_cast<double>(bytes->size())),
+                  "encoding");
+  }
+  if (frames == 0) return data_error(settings.in, "no frame to encode");
+  encoder->finish(out);
+  if (extension(settings.out) == ".mpg" || extension(settings.out) == ".mpeg") {
+    auto system = mpeg1::multiplex(out);
+    if (!system.ok()) return data_error(settings.in, system.failure());
+    out = std::move(*system);
+  }
+  if (const int code = write_output(settings.out, out); code != kDone) return code;
+  return print_summary(options, settings, frames, repeated, out.size());
+}
+
+}  // namespace
+
+int run_mpeg1_encode(Args args) {
+  Options options("mpeg1 encode", "codes a Y4M clip as MPEG-1 video",
+                  "pac mpeg1 encode clip.y4m -o clip.m1v --quantizer-scale 4");
+  EncodeSettings settings;
+  options.positional("IN.y4m", settings.in, "8-bit 4:2:0; - is stdin");
+  options.text("-o|--output", "OUT", settings.out, ".m1v, or .mpg for a system stream; - is stdout", true);
+  options.real("--quantizer-scale", "Q", settings.sequence.quantizer_scale, 1, 31,
+               "fixed quantizer, also between integers (default 4)");
+  options.integer("--bit-rate", "BPS", settings.bit_rate_bps, 400, 100000000, "constant bit rate instead");
+  options.integer("--gop", "N", settings.sequence.gop_length, 1, 132, "an I picture every N pictures (default 15)");
+  options.integer("--slice-rows", "N", settings.sequence.slice_rows, 0, 175,
+                  "macroblock rows a slice, 0: one slice a picture (default 0)");
+  options.flag("--scene-cuts", settings.sequence.scene_cuts, "I pictures where the scene changes");
+  options.choice<mpeg1::Effort>(
+      "--effort", settings.sequence.effort,
+      {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
+      "how hard to search (default: default)");
+  if (const auto code = options.parse(args)) return *code;
+  if (options.json && settings.out == "-") return options.usage_error("--json and -o - both want stdout");
+  if (options.given("--bit-rate") && options.given("--quantizer-scale"))
+    return options.usage_error("--bit-rate and --quantizer-scale exclude each other");
+  return encode(options, settings);
+}
+
+}  // namespace pac::cli
