@@ -26,7 +26,7 @@ enum AttributeBasis : uint32_t {
 inline AttributeBasis attribute_basis(const Stencil& stencil) {
   if (stencil.extended) return kFromExtension;
   if (stencil.n_parallelograms > 0)
-    return static_cast<AttributeBasis>(kFromOne + std::min(stencil.n_parallelograms, 3) - 1);
+    return static_cast<AttributeBasis>(kFromOne + static_cast<uint32_t>(std::min(stencil.n_parallelograms, 3)) - 1);
   return stencil.n_neighbors > 0 ? kFromNeighbors : kFromPrevious;
 }
 

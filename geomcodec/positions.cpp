@@ -18,7 +18,7 @@ enum Basis : uint32_t { kPrevious, kNeighbors, kExtension, kOneParallelogram, kT
 Basis basis_of(const Stencil& stencil) {
   if (stencil.extended) return kExtension;
   if (stencil.n_parallelograms > 0)
-    return static_cast<Basis>(kOneParallelogram + std::min(stencil.n_parallelograms, 3) - 1);
+    return static_cast<Basis>(kOneParallelogram + static_cast<uint32_t>(std::min(stencil.n_parallelograms, 3)) - 1);
   return stencil.n_neighbors > 0 ? kNeighbors : kPrevious;
 }
 
