@@ -49,6 +49,7 @@ void fill(Kernels& table, Isa isa) {
     fill_motion_sse41(table.motion);
     fill_pixel_sse41(table.pixel);
     fill_tile_sse41(table.tile);
+    fill_warp_sse41(table.warp);
   }
 #endif
 #ifdef PAC_HAVE_AVX2

@@ -25,7 +25,7 @@ struct WarpKernels {
   void (*reproject_row)(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                         float* u_before);
 
-  // n points of a plane of 16-bit samples in -511..511. Point i starts at plane + offset[i] (its tap -2, -2; rows are
+  // n points of a plane of 16-bit samples in -255..255. Point i starts at plane + offset[i] (its tap -2, -2; rows are
   // `stride` apart), at the phases phase_x[i] and phase_y[i] (0..63), rows of `taps` [kWarpPhases][kWarpTapStride]
   // whose sum is 128 and whose absolute sum is at most 255:
   //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 1) >> 1        fits 16 bits
@@ -38,7 +38,5 @@ struct WarpKernels {
 // One per instruction set: overwrites the entries that it improves.
 void fill_warp_scalar(WarpKernels& table);
 void fill_warp_sse41(WarpKernels& table);
-void fill_warp_avx2(WarpKernels& table);
-void fill_warp_neon(WarpKernels& table);
 
 }  // namespace pac
