@@ -49,12 +49,13 @@ void AnimationFiles::add_frame(const sim::AnimationFrame& frame) {
 int AnimationFiles::write() const {
   if (folder_.empty()) return kDone;
   const bool is_video = codec_ == sim::VideoCodec::mpeg1;
-  const std::pair<const char*, const Bytes*> files[] = {{is_video ? "image.m1v" : "image.mjpeg", &image_},
-                                                        {is_video ? "difference.m1v" : "difference.mjpeg", &difference_},
-                                                        {"session.pacs", &pacs_},
-                                                        {"H.y4m", &high_y4m_},
-                                                        {"image.y4m", &image_y4m_},
-                                                        {"composite.y4m", &composite_y4m_}};
+  const std::pair<const char*, const Bytes*> files[] = {
+      {is_video ? "image.m1v" : "image.mjpeg", &image_},
+      {is_video ? "difference.m1v" : "difference.mjpeg", &difference_},
+      {"session.pacs", &pacs_},
+      {"H.y4m", &high_y4m_},
+      {"image.y4m", &image_y4m_},
+      {"composite.y4m", &composite_y4m_}};
   for (const auto& [name, bytes] : files)
     if (const int code = write_output(folder_ + "/" + name, *bytes); code != kDone) return code;
   return kDone;
