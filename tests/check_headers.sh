@@ -2,6 +2,10 @@
 # Each public header compiles alone. Usage: check_headers.sh CXX SOURCE_DIR
 set -euo pipefail
 cd "$2"
-headers=$(find base raster jpeg mpeg1 geomcodec sim -name '*.h' | sort)
-for header in $headers; do printf '#include "%s"\n' "$header" | "$1" -std=c++20 -fsyntax-only -Wall -Wextra -I. -x c++ - || { echo "$header does not compile alone"; exit 1; }; done
-echo "$(wc -w <<<"$headers") headers compile alone"
+export CXX=$1
+compile_alone() {
+  printf '#include "%s"\n' "$1" | "$CXX" -std=c++20 -fsyntax-only -Wall -Wextra -I. -x c++ - || { echo "$1 does not compile alone"; exit 1; }
+}
+export -f compile_alone
+find base raster jpeg mpeg1 geomcodec sim -name '*.h' | sort | xargs -P "$(nproc)" -I{} bash -c 'compile_alone {}'
+echo "every header compiles alone"
