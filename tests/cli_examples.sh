@@ -40,6 +40,6 @@ while IFS= read -r name; do
   echo "\$ $example"
   bash -c "$example" >output 2>&1 || { cat output; echo "failed: $example"; exit 1; }
   n=$((n + 1))
-done < <(pac --help | sed -n 's/^  \([a-z][a-z ]*[a-z]\)  .*/\1/p')
+done < <(pac --help | sed -n 's/^  \([a-z][a-z0-9 ]*[a-z0-9]\)  .*/\1/p')
 [ "$n" -ge 15 ] || { echo "only $n examples were found"; exit 1; }
 echo "$n examples ran"
