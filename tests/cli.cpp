@@ -326,6 +326,20 @@ TEST_CASE("a model of one's own renders with its textures; a missing one is a wa
   CHECK(folder.read("a.png") != folder.read("b.png"));
 }
 
+TEST_CASE("animate shows a model of one's own in every frame, and from another side in the next") {
+  const CliFolder folder;
+  folder.write("m.obj", "v 499 -1 0\nv 501 -1 0\nv 501 1 1\nv 499 1 0\nf 1 2 3 4\n");
+  REQUIRE(folder.pac("animate m.obj --codec mjpeg --frames 2 --width 64 --height 64 -o out").code == 0);
+  const std::string sequence = folder.read("out/H.y4m");
+  constexpr size_t kLuma = 64 * 64, kFrame = kLuma * 3 / 2;
+  REQUIRE(sequence.size() > 2 * kFrame);
+  const std::string second = sequence.substr(sequence.size() - kFrame, kLuma);
+  const std::string first = sequence.substr(sequence.size() - 2 * kFrame - 6, kLuma);  // "FRAME\n" between them
+  CHECK(first.find_first_not_of(first[0]) != std::string::npos);
+  CHECK(second.find_first_not_of(second[0]) != std::string::npos);
+  CHECK(first != second);
+}
+
 TEST_CASE("compare matches both arms' bytes and writes a page of its own") {
   const CliFolder folder;
   const std::string compare = "compare letter-texture --width 96 --height 96 --samples 1 --json ";

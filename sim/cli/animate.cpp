@@ -196,7 +196,11 @@ int run_animate(Args args) {
     files.add_frame(frame);
     progress.show(static_cast<double>(frame.number + 1) / animation.frames, "frames");
   };
-  const auto path = [&](int frame, float aspect) { return source->camera(request.first + frame, aspect); };
+  // The animation takes the scene over; a copy of its mesh stays behind, which the path of a loaded model frames.
+  SceneSource framed;
+  framed.builtin = source->builtin;
+  framed.set.fine.mesh = source->set.fine.mesh;
+  const auto path = [&](int frame, float aspect) { return framed.camera(request.first + frame, aspect); };
   const auto result = sim::run_animation(std::move(source->set), path, animation, sink);
   if (!result.ok()) return data_error(request.scene, result.failure());
   if (const int code = files.write(); code != kDone) return code;
