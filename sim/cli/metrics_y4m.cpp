@@ -8,7 +8,6 @@
 
 #include "base/cambi.h"
 #include "base/flip.h"
-#include "base/kernels/kernels.h"
 #include "base/metrics.h"
 #include "base/parallel.h"
 #include "base/psnr_hvs.h"
@@ -16,6 +15,7 @@
 #include "base/verdict.h"
 #include "base/y4m.h"
 #include "sim/cli/metrics.h"
+#include "sim/frame420.h"
 
 namespace pac::cli {
 namespace {
@@ -27,20 +27,9 @@ struct FrameScores {
   double flicker = 0;  // of the change from the frame before
 };
 
-// JFIF's colors, chroma by the triangle filter.
 RgbImage rgb_of(const Frame420& frame, Isa isa) {
-  const Kernels* kernels = kernels_for(isa);
-  PAC_ASSERT(kernels != nullptr);
-  const PixelKernels& pixel = kernels->pixel;
-  const auto n_chroma = static_cast<size_t>(frame.cb.width());
-  std::vector<uint8_t> cb(2 * n_chroma), cr(2 * n_chroma);
   RgbImage picture(frame.width(), frame.height());
-  for (int y = 0; y < frame.height(); ++y) {
-    const int near = y / 2, far = std::clamp(y % 2 == 0 ? near - 1 : near + 1, 0, frame.cb.height() - 1);
-    pixel.upsample_h2v2_row(frame.cb.row(near), frame.cb.row(far), n_chroma, cb.data());
-    pixel.upsample_h2v2_row(frame.cr.row(near), frame.cr.row(far), n_chroma, cr.data());
-    pixel.rgb_from_ycc_row(frame.y.row(y), cb.data(), cr.data(), static_cast<size_t>(frame.width()), picture.row(y));
-  }
+  sim::rgb_from_frame420(frame, picture.view(), isa);
   return picture;
 }
 
