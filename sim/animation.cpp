@@ -5,7 +5,6 @@
 
 #include "jpeg/jpeg.h"
 #include "sim/animation_parts.h"
-#include "sim/packet.h"
 
 namespace pac::sim {
 
@@ -85,12 +84,13 @@ Result<void> show_frame(int number, const AnimationOptions& options, const Anima
   const ScoredPair pairs[] = {{sent.high.view(), image.shown.view()}, {sent.high.view(), composite.view()}};
   const std::vector<FrameScores> scores = score_frames(pairs, options.render.threads);
   add_frame(out.image_based, image.code.size(), image.quality, scores[0]);
-  add_frame(out.polygon_assisted, sent.difference_bytes + sent.model_bytes, sent.quality, scores[1]);
+  const bool is_video = options.codec == VideoCodec::mpeg1;
+  const uint64_t charged = is_video ? packet.size() : sent.difference_bytes + sent.model_bytes;
+  add_frame(out.polygon_assisted, charged, sent.quality, scores[1]);
   out.packet_bytes += packet.size();
   if (!sink.frame) return {};
-  PAC_TRY(const FramePacket fields, read_frame_packet(packet));
   // Behind the byte that says how it is predicted, a video frame is MPEG-1.
-  const auto code = fields.codec == Codec::mpeg1 ? fields.difference.subspan(1) : fields.difference;
+  const auto code = std::span<const uint8_t>(sent.code).subspan(is_video ? 1 : 0);
   sink.frame({number, sent.high, image.shown, composite, image.code, code, packet});
   return {};
 }

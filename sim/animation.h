@@ -38,7 +38,7 @@ struct AnimationOptions {
 
 // One arm's frame.
 struct ArmFrame {
-  uint64_t bytes = 0;  // of the code: JPEG file or MPEG picture, and the model where it is transmitted
+  uint64_t bytes = 0;  // JPEG file, and the model where it is transmitted; MPEG picture; of assisted video the packet
   double quality = 0;  // coded quality; mpeg1: quantizer_scale
   FrameScores scores{};
 };

@@ -27,6 +27,7 @@ struct Client::State {
   DepthImage depth;  // of L: codec mpeg1
   IdImage id;
   std::optional<AssistedDecoder> video;
+  PacketReader packets;
 };
 
 namespace {
@@ -67,7 +68,8 @@ Result<Client> Client::create(std::span<const uint8_t> session, const ClientOpti
                                               false,
                                               {},
                                               {},
-                                              std::nullopt}));
+                                              std::nullopt,
+                                              {}}));
 }
 
 Client::Client(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -89,7 +91,7 @@ uint32_t Client::frame_number() const {
 
 Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   State& state = *state_;
-  PAC_TRY(const FramePacket packet, read_frame_packet(bytes));
+  PAC_TRY(const FramePacket packet, state.packets.read(bytes));
   if (packet.has_model == state.resident)
     return Failure{Error::corrupt, 7, "packet and session disagree about where the model is"};
   const bool is_video = packet.codec == Codec::mpeg1;
@@ -118,7 +120,8 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   }
   const bool in_order = state.started && packet.frame == state.frame_number + 1;
   state.frame_number = packet.frame;
-  if (image_hash(state.low.view()) != packet.low_hash)
+  const uint64_t hash = image_hash(state.low.view());
+  if ((packet.is_short ? static_cast<uint32_t>(hash) : hash) != packet.low_hash)
     return Failure{Error::corrupt, 96, "low-quality rendering differs from the server's"};
   if (!is_video) return receive_jpeg(packet, state.low, state.options);
 

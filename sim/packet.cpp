@@ -4,6 +4,7 @@
 
 #include "base/checksum.h"
 #include "sim/byte_stream.h"
+#include "sim/camera_code.h"
 
 namespace pac::sim {
 
@@ -13,6 +14,8 @@ constexpr uint32_t kFrameMagic = 0x46434150;    // "PACF"
 constexpr uint32_t kSessionMagic = 0x4D434150;  // "PACM"
 constexpr size_t kCrcBytes = 4;
 constexpr uint8_t kHasModel = 1;
+constexpr uint8_t kShortMagic = 0xF1;
+constexpr size_t kShortHead = 7;  // bytes before the camera
 
 Bytes with_crc(ByteWriter& writer) {
   writer.u32(crc32(writer.bytes()));
@@ -113,6 +116,73 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes) {
     return Failure{Error::corrupt, lengths_at, "packet without a model has bytes of one"};
   packet.model = reader.raw(model_bytes);
   packet.difference = reader.raw(difference_bytes);
+  return packet;
+}
+
+namespace {
+
+bool is_finite(const raster::Camera& camera) {
+  bool finite = true;
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row) finite = finite && std::isfinite(camera.clip_from_world[column][row]);
+  for (int axis = 0; axis < 3; ++axis) finite = finite && std::isfinite(camera.eye[axis]);
+  return finite;
+}
+
+FramePacket without_bytes(FramePacket packet) {
+  packet.model = packet.difference = {};
+  return packet;
+}
+
+Result<FramePacket> read_short(std::span<const uint8_t> bytes, const std::optional<FramePacket>& whole) {
+  if (bytes.size() < kShortHead + kCrcBytes)
+    return Failure{Error::truncated, bytes.size(), "message shorter than its header"};
+  const auto body = bytes.first(bytes.size() - kCrcBytes);
+  if (ByteReader(bytes.last(kCrcBytes)).u32() != crc32(body))
+    return Failure{Error::corrupt, body.size(), "checksum does not match"};
+  ByteReader head(body);
+  head.u8();
+  const uint8_t tag = head.u8(), distance = head.u8();
+  if (!whole || tag != static_cast<uint8_t>(whole->frame) || distance == 0)
+    return Failure{Error::corrupt, 1, "the packet that this one leans on did not arrive"};
+  FramePacket packet;
+  packet.is_short = true;
+  packet.codec = Codec::mpeg1;
+  packet.frame = whole->frame + distance;
+  packet.low_hash = head.u32();
+  BitReader bits(body.subspan(kShortHead));
+  packet.camera = read_camera_change(bits, whole->camera);
+  bits.align_to_byte();
+  if (bits.overrun()) return Failure{Error::truncated, body.size(), "packet ends inside its header"};
+  if (!is_finite(packet.camera)) return Failure{Error::corrupt, kShortHead, "camera is not finite"};
+  packet.difference = body.subspan(kShortHead + static_cast<size_t>(bits.byte_offset()));
+  return packet;
+}
+
+}  // namespace
+
+Bytes PacketWriter::write(const FramePacket& packet, bool stands_alone) {
+  const uint32_t distance = whole_ ? packet.frame - whole_->frame : 0;
+  if (stands_alone || packet.codec != Codec::mpeg1 || packet.has_model || distance < 1 || distance > 255) {
+    whole_ = without_bytes(packet);
+    return write_frame_packet(packet);
+  }
+  ByteWriter writer;
+  writer.u8(kShortMagic);
+  writer.u8(static_cast<uint8_t>(whole_->frame));
+  writer.u8(static_cast<uint8_t>(distance));
+  writer.u32(static_cast<uint32_t>(packet.low_hash));
+  BitWriter camera;
+  write_camera_change(camera, packet.camera, whole_->camera);
+  writer.raw(camera.take());
+  writer.raw(packet.difference);
+  return with_crc(writer);
+}
+
+Result<FramePacket> PacketReader::read(std::span<const uint8_t> bytes) {
+  if (!bytes.empty() && bytes[0] == kShortMagic) return read_short(bytes, whole_);
+  PAC_TRY(const FramePacket packet, read_frame_packet(bytes));
+  whole_ = without_bytes(packet);
   return packet;
 }
 

@@ -4,11 +4,17 @@
 //            | resident model (to the end; absent where the model is transmitted) | CRC-32 u32
 //   frame    "PACF" version u16 codec u8 flags u8 | frame u32 | camera 19 x f32 | coded quality f64 | hash of L u64
 //            | model length u32 difference length u32 | model bytes | difference bytes | CRC-32 u32
+//   short    0xF1 | low 8 bits of the frame number of the last "PACF" u8 | frames since then u8 | low 32 bits of the
+//            hash of L u32 | camera against that packet's (sim/camera_code.h), to a whole byte | difference bytes
+//            | CRC-32 u32
+// Short packets carry the video pictures between two that stand alone. Each leans on the whole packet before it only: a
+// short one that is lost takes no other with it.
 // The CRC [ISO 3309, as in PNG] covers all bytes before it. Floats travel as their raw bits, so that both sides draw
 // with the same numbers.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +38,7 @@ struct FramePacket {
   raster::Camera camera;
   double quality = 0;     // coded quality of the difference image, for display only
   uint64_t low_hash = 0;  // image_hash of the L that the server subtracted
+  bool is_short = false;  // codec mpeg1, no model; of low_hash the low 32 bits only, quality 0
   std::span<const uint8_t> model;
   std::span<const uint8_t> difference;
 };
@@ -41,6 +48,26 @@ Bytes write_frame_packet(const FramePacket& packet);
 // Fails with truncated (shorter than it says), corrupt (magic, CRC, lengths, bytes after the end, camera not finite)
 // or unsupported (version, codec). Failure::byte_offset is the offending field's.
 Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes);
+
+// The frame packets of one session, in order of sending.
+class PacketWriter {
+ public:
+  // A short packet where it may be: codec mpeg1, not `stands_alone`, less than 256 frames after the last whole one.
+  Bytes write(const FramePacket& packet, bool stands_alone);
+
+ private:
+  std::optional<FramePacket> whole_;  // the last; camera and number only
+};
+
+class PacketReader {
+ public:
+  // As read_frame_packet; corrupt where a short packet leans on a whole one that did not arrive: only a picture that
+  // stands alone helps then.
+  Result<FramePacket> read(std::span<const uint8_t> bytes);
+
+ private:
+  std::optional<FramePacket> whole_;
+};
 
 struct SessionMessage {
   int width = 0, height = 0;  // pixels, 1..65535

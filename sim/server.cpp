@@ -17,6 +17,7 @@ struct Server::State {
   ServerFrame last;
   std::optional<AssistedEncoder> video;
   bool key_requested = false;
+  PacketWriter packets;
 };
 
 namespace {
@@ -49,7 +50,7 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
     PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
   }
   return Server(std::make_unique<State>(
-      State{std::move(scene), options, std::move(renderer), std::move(session), {}, std::move(video), false}));
+      State{std::move(scene), options, std::move(renderer), std::move(session), {}, std::move(video), false, {}}));
 }
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -131,7 +132,7 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   packet.low_hash = image_hash(images.low.view());
   packet.model = images.model.bytes;
   packet.difference = coded.bytes;
-  Bytes bytes = write_frame_packet(packet);
+  Bytes bytes = state_->packets.write(packet, coded.video.is_key);
 
   ServerFrame& last = state_->last;
   last.composite = std::move(coded.composite);
@@ -142,6 +143,7 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   last.quality = coded.quality;
   last.model_bytes = images.model.bytes.size();
   last.difference_bytes = coded.bytes.size();
+  last.code = std::move(coded.bytes);
   last.packet_bytes = bytes.size();
   return bytes;
 }

@@ -37,6 +37,7 @@ struct ServerFrame {
   RgbImage composite;    // what a client will show, bit for bit
   double quality = 0;    // coded quality of D; codec mpeg1: quantizer_scale
   AssistedReport video;  // codec mpeg1
+  Bytes code;            // of the difference: JPEG, or the byte that says how it is predicted and MPEG-1
   uint64_t model_bytes = 0, difference_bytes = 0, packet_bytes = 0;
 };
 

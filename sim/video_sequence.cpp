@@ -6,6 +6,7 @@
 #include "base/exact_math.h"
 #include "mpeg1/mpeg1.h"
 #include "sim/frame420.h"
+#include "sim/packet.h"
 
 namespace pac::sim {
 
@@ -29,6 +30,7 @@ Result<std::vector<VideoFrame>> code_image_video(const std::vector<Shot>& shots,
     VideoFrame coded;
     PAC_TRY(const mpeg1::PictureReport report, encoder.add(frame, coded.code));
     coded.quantizer_scale = report.quantizer_scale;
+    coded.sent_bytes = coded.code.size();
     if (keep_shown) {
       coded.shown = RgbImage(width, height);
       rgb_from_frame420(mpeg1::copy_of(encoder.reconstruction()), coded.shown.view(), options.isa);
@@ -42,6 +44,7 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
                                                     const AssistedVideoOptions& options, Isa isa, bool keep_shown) {
   PAC_TRY(AssistedEncoder encoder, AssistedEncoder::create(scene, options, isa));
   std::vector<VideoFrame> frames;
+  PacketWriter packets;
   for (const Shot& shot : shots) {
     const FrameImages& images = shot.images;
     VideoFrame coded;
@@ -49,6 +52,12 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
             encoder.encode({images.high.view(), images.low.view(), images.depth.view(), images.id.view(), shot.camera},
                            coded.code));
     coded.quantizer_scale = report.quantizer_scale;
+    FramePacket packet;
+    packet.frame = static_cast<uint32_t>(frames.size());
+    packet.codec = Codec::mpeg1;
+    packet.camera = shot.camera;
+    packet.difference = coded.code;
+    coded.sent_bytes = packets.write(packet, report.is_key).size();
     if (keep_shown) {
       coded.shown = RgbImage(images.low.width(), images.low.height());
       encoder.composite(images.low.view(), coded.shown.view());
@@ -60,7 +69,7 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
 
 uint64_t total_bytes(const std::vector<VideoFrame>& frames) {
   uint64_t bytes = 0;
-  for (const VideoFrame& frame : frames) bytes += frame.code.size();
+  for (const VideoFrame& frame : frames) bytes += frame.sent_bytes;
   return bytes;
 }
 

@@ -21,6 +21,7 @@ struct Shot {
 // One coded frame and what a viewer sees of it.
 struct VideoFrame {
   Bytes code;
+  uint64_t sent_bytes = 0;  // what is charged: the code, of assisted video the whole packet with camera and checksums
   RgbImage shown;
   double quantizer_scale = 0;
 };
@@ -43,6 +44,7 @@ Result<std::vector<VideoFrame>> code_image_video(const std::vector<Shot>& shots,
 Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& shots, const AssistedScene& scene,
                                                     const AssistedVideoOptions& options, Isa isa, bool keep_shown);
 
+// Of everything sent.
 uint64_t total_bytes(const std::vector<VideoFrame>& frames);
 
 // The quantizer_scale in 1..31 whose sequence has at most `target_bytes` and at least 99 % of them, as near as eight

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "base/metrics.h"
@@ -126,6 +127,23 @@ TEST_CASE("a key frame on request ends the damage at once") {
   CHECK(server.last_frame().video.is_key);
 }
 
+TEST_CASE("a lost key frame is told by name, and the next one puts everything right") {
+  constexpr int kGroup = 4;
+  sim::Server server = make_server({Prediction::model, Difference::full}, kGroup);
+  sim::Client client = make_client(server);
+  for (int number = 0; number < 3 * kGroup; ++number) {
+    const Bytes packet = send(server, number);
+    if (number == kGroup) continue;  // lost
+    const auto shown = client.receive(packet);
+    const bool leans_on_lost = number > kGroup && number < 2 * kGroup;
+    REQUIRE(shown.ok() == !leans_on_lost);
+    if (leans_on_lost)
+      CHECK(std::string(shown.failure().text) == "the packet that this one leans on did not arrive");
+    else
+      CHECK(shows_the_same(shown, server));
+  }
+}
+
 TEST_CASE("full differences pass the quality at which halved ones stop") {
   double rms[2];
   for (const Difference difference : {Difference::halved, Difference::full}) {
@@ -141,9 +159,10 @@ TEST_CASE("full differences pass the quality at which halved ones stop") {
 TEST_CASE("differences coded by blocks alone are a stream that an ordinary decoder plays") {
   sim::Server server = make_server({Prediction::block, Difference::halved});
   Bytes stream;
+  sim::PacketReader packets;
   for (int number = 0; number < 5; ++number) {
     const Bytes packet = send(server, number);
-    const auto fields = sim::read_frame_packet(packet);
+    const auto fields = packets.read(packet);
     REQUIRE(fields.ok());
     stream.insert(stream.end(), fields->difference.begin() + 1, fields->difference.end());
   }

@@ -5,8 +5,10 @@
 #include <string>
 
 #include "base/checksum.h"
+#include "sim/camera_code.h"
 #include "sim/client.h"
 #include "sim/packet.h"
+#include "sim/scenes.h"
 #include "sim/server.h"
 #include "tests/support/small_scene.h"
 
@@ -68,6 +70,91 @@ TEST_CASE("a frame packet comes back field by field, camera bits unchanged") {
   CHECK(back->low_hash == packet.low_hash);
   CHECK(Bytes(back->model.begin(), back->model.end()) == model);
   CHECK(Bytes(back->difference.begin(), back->difference.end()) == difference);
+}
+
+// The camera through a change against `base`; its size in bits.
+uint64_t camera_round_trip(const raster::Camera& camera, const raster::Camera& base) {
+  BitWriter writer;
+  sim::write_camera_change(writer, camera, base);
+  const uint64_t bits = writer.size_bits();
+  const Bytes bytes = writer.take();
+  BitReader reader(bytes);
+  const raster::Camera back = sim::read_camera_change(reader, base);
+  CHECK(std::memcmp(&back.clip_from_world, &camera.clip_from_world, sizeof(glm::mat4)) == 0);
+  CHECK(std::memcmp(&back.eye, &camera.eye, sizeof(glm::vec3)) == 0);
+  CHECK(reader.position_bits() == bits);
+  CHECK(!reader.overrun());
+  return bits;
+}
+
+TEST_CASE("a moved camera comes back bit for bit in half of its 76 bytes, a resting one in 14") {
+  for (const sim::BuiltinScene& builtin : sim::builtin_scenes())
+    for (const int frame : {1, 7, 60, 131}) {
+      INFO(builtin.name << " " << frame);
+      const uint64_t bits = camera_round_trip(builtin.camera(frame, 1.25f), builtin.camera(0, 1.25f));
+      CHECK(bits <= 8 * 38);
+    }
+  CHECK(camera_round_trip(test::small_camera(3, 1), test::small_camera(3, 1)) <= 8 * 14);
+}
+
+TEST_CASE("any 19 numbers come back as a camera's change against any others") {
+  uint32_t state = 1;
+  for (int round = 0; round < 500; ++round) {
+    raster::Camera cameras[2];
+    for (raster::Camera& camera : cameras) {
+      uint32_t bits[19];
+      for (uint32_t& word : bits) {
+        state = state * 1664525u + 1013904223u;
+        const uint32_t odd[] = {0, 0x80000000u, 0x7FC00000u, 0xFF800000u, 1, 0x7F7FFFFFu};
+        word = round % 3 == 0 ? odd[(state >> 8) % 6] : state ^ state >> 15;
+      }
+      std::memcpy(&camera.clip_from_world, bits, 64);
+      std::memcpy(&camera.eye, bits + 16, 12);
+    }
+    CHECK(camera_round_trip(cameras[0], cameras[1]) <= 8 * 91);
+  }
+}
+
+TEST_CASE("short packets come back against the last whole one, whichever of them are lost between") {
+  sim::PacketWriter writer;
+  sim::PacketReader reader;
+  const Bytes code = {1, 2, 3, 4, 5};
+  std::vector<Bytes> packets;
+  for (int i = 0; i < 300; ++i) {
+    sim::FramePacket packet;
+    packet.frame = 1000 + static_cast<uint32_t>(i);
+    packet.codec = sim::Codec::mpeg1;
+    packet.camera = test::small_camera(i, 1);
+    packet.low_hash = 0x1111111122222222u + static_cast<uint64_t>(i);
+    packet.difference = code;
+    packets.push_back(writer.write(packet, i == 0));
+  }
+  int n_whole = 0;
+  for (int i = 0; i < 300; ++i) {
+    if (i % 7 == 3) continue;  // lost, none of them whole
+    const auto back = reader.read(packets[static_cast<size_t>(i)]);
+    REQUIRE(back.ok());
+    CHECK(back->frame == 1000 + static_cast<uint32_t>(i));
+    CHECK(back->is_short == (i != 0 && i != 256));
+    CHECK(static_cast<uint32_t>(back->low_hash) == 0x22222222u + static_cast<uint32_t>(i));
+    CHECK(Bytes(back->difference.begin(), back->difference.end()) == code);
+    const raster::Camera camera = test::small_camera(i, 1);
+    CHECK(std::memcmp(&back->camera.clip_from_world, &camera.clip_from_world, sizeof(glm::mat4)) == 0);
+    n_whole += back->is_short ? 0 : 1;
+  }
+  CHECK(n_whole == 2);
+  const Bytes& last = packets[299];
+  for (size_t size = 0; size < last.size(); ++size) REQUIRE(!reader.read(std::span(last).first(size)).ok());
+  for (size_t bit = 0; bit < 8 * last.size(); ++bit) {
+    Bytes damaged = last;
+    damaged[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+    REQUIRE(!reader.read(damaged).ok());
+  }
+  CHECK(std::string(reader.read(packets[3]).failure().text) == "the packet that this one leans on did not arrive");
+  CHECK(!sim::PacketReader().read(last).ok());
+  // Right checksum, camera cut off: the bits run out.
+  Bytes cut(last.begin(), last.begin() + 12);
+  CHECK(reader.read(patched(cut, 0, {0xF1})).failure().error == Error::truncated);
 }
 
 TEST_CASE("every strict prefix and every extra byte is refused, by the reader and by the client") {
