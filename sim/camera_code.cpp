@@ -77,8 +77,9 @@ class Predictor {
   // `known` holds what came before.
   float predict(Place place, const Numbers& known) const {
     const float before = base_.at[place.row][place.column];
-    const auto guess = static_cast<float>(rigid(place, known));
-    return guess - guess == 0.0f ? guess : before;  // not finite: the bits of a NaN differ between machines
+    const double guess = rigid(place, known);
+    const bool is_float = std::fabs(guess) <= 3.4028234663852886e38;  // no NaN either: its bits differ between machines
+    return is_float ? static_cast<float>(guess) : before;
   }
 
  private:

@@ -15,6 +15,8 @@ constexpr uint32_t kSessionMagic = 0x4D434150;  // "PACM"
 constexpr size_t kCrcBytes = 4;
 constexpr uint8_t kHasModel = 1;
 constexpr uint8_t kShortMagic = 0xF1;
+// Less than 256, so that the next whole packet's number differs in its low 8 bits.
+constexpr uint32_t kMostFramesSince = 250;
 constexpr size_t kShortHead = 7;  // bytes before the camera
 
 Bytes with_crc(ByteWriter& writer) {
@@ -163,7 +165,7 @@ Result<FramePacket> read_short(std::span<const uint8_t> bytes, const std::option
 
 Bytes PacketWriter::write(const FramePacket& packet, bool stands_alone) {
   const uint32_t distance = whole_ ? packet.frame - whole_->frame : 0;
-  if (stands_alone || packet.codec != Codec::mpeg1 || packet.has_model || distance < 1 || distance > 255) {
+  if (stands_alone || packet.codec != Codec::mpeg1 || packet.has_model || distance < 1 || distance > kMostFramesSince) {
     whole_ = without_bytes(packet);
     return write_frame_packet(packet);
   }

@@ -52,7 +52,7 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes);
 // The frame packets of one session, in order of sending.
 class PacketWriter {
  public:
-  // A short packet where it may be: codec mpeg1, not `stands_alone`, less than 256 frames after the last whole one.
+  // A short packet where it may be: codec mpeg1, not `stands_alone`, at most 250 frames after the last whole one.
   Bytes write(const FramePacket& packet, bool stands_alone);
 
  private:

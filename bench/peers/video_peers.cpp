@@ -3,8 +3,8 @@
 //   video_peers SCENE [SPLIT] [FRAMES] [all]      SCENE: a built-in name or an OBJ file; `all` adds the peers' best:
 //                                                 two passes, B pictures, SVT-AV1 preset 4 with random access
 // Every arm at several rates, scored against H in RGB; then our bytes over each peer's at equal score, metric by
-// metric. Charged: the code of every frame from the first on. Not charged: containers' boxes (raw H.264 and H.265
-// streams, IVF less its headers), our packets' cameras and checksums (their bytes are printed), and the resident model.
+// metric. Charged: every frame from the first on, ours as whole packets with camera, hash and checksum. Not charged:
+// containers' boxes (raw H.264 and H.265 streams, IVF less its headers), and the resident model.
 #include <sys/wait.h>
 #include <unistd.h>
 
