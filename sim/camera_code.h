@@ -1,5 +1,5 @@
-// A camera in some 30 bytes instead of 76, bit for bit: against an earlier camera, by what a rigid camera with the same
-// lens must be. Six numbers (eye, two of the direction, one of the roll) are coded as they changed; the others are
+// A camera in 15 to 40 bytes instead of 76, bit for bit: against an earlier camera, by what a rigid camera with the
+// same lens must be. Six numbers (eye, two of the direction, one of the roll) are coded as they changed; the others are
 // predicted from them and corrected in the last place. A camera that is nothing of the kind takes more bits, no more
 // than 88 bytes, and comes back just the same.
 #pragma once

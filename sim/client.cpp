@@ -122,7 +122,7 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   state.frame_number = packet.frame;
   const uint64_t hash = image_hash(state.low.view());
   if ((packet.is_short ? static_cast<uint32_t>(hash) : hash) != packet.low_hash)
-    return Failure{Error::corrupt, 96, "low-quality rendering differs from the server's"};
+    return Failure{Error::corrupt, packet.is_short ? 3u : 96u, "low-quality rendering differs from the server's"};
   if (!is_video) return receive_jpeg(packet, state.low, state.options);
 
   RgbImage picture(state.width, state.height);

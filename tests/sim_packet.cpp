@@ -87,12 +87,12 @@ uint64_t camera_round_trip(const raster::Camera& camera, const raster::Camera& b
   return bits;
 }
 
-TEST_CASE("a moved camera comes back bit for bit in half of its 76 bytes, a resting one in 14") {
+TEST_CASE("a moved camera comes back bit for bit in 40 bytes of 76, a resting one in 14") {
   for (const sim::BuiltinScene& builtin : sim::builtin_scenes())
     for (const int frame : {1, 7, 60, 131}) {
       INFO(builtin.name << " " << frame);
       const uint64_t bits = camera_round_trip(builtin.camera(frame, 1.25f), builtin.camera(0, 1.25f));
-      CHECK(bits <= 8 * 38);
+      CHECK(bits <= 8 * 40);
     }
   CHECK(camera_round_trip(test::small_camera(3, 1), test::small_camera(3, 1)) <= 8 * 14);
 }
@@ -111,7 +111,7 @@ TEST_CASE("any 19 numbers come back as a camera's change against any others") {
       std::memcpy(&camera.clip_from_world, bits, 64);
       std::memcpy(&camera.eye, bits + 16, 12);
     }
-    CHECK(camera_round_trip(cameras[0], cameras[1]) <= 8 * 91);
+    CHECK(camera_round_trip(cameras[0], cameras[1]) <= 8 * 88);
   }
 }
 

@@ -31,5 +31,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!client.ok()) return 0;
   const auto packet = with_right_checksum(data + 2 + session_size, size - 2 - session_size);
   (void)client->receive(packet);
+  // The same bytes once more as a short packet that leans on the first.
+  if (packet.size() < 16) return 0;
+  std::vector<uint8_t> leaning(packet.begin() + 8, packet.end());
+  leaning[0] = 0xF1;
+  leaning[1] = packet[8];
+  (void)client->receive(with_right_checksum(leaning.data(), leaning.size()));
   return 0;
 }
