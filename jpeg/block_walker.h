@@ -18,11 +18,14 @@ struct Levels {
 // Visits the blocks of a scan in order.
 class BlockWalker {
  public:
-  // At the start of a scan. `frame` must outlive the use.
-  void reset(const Frame& frame, int restart_interval_mcus) {
+  // At the start of a scan, or before an MCU row that a restart marker precedes. `frame` must outlive the use.
+  void reset(const Frame& frame, int restart_interval_mcus, int first_row = 0) {
     frame_ = &frame;
-    restart_interval_ = to_restart_ = restart_interval_mcus;
+    restart_interval_ = restart_interval_mcus;
+    to_restart_ = first_row == 0 ? restart_interval_mcus : 0;
     next_restart_ = 0;
+    if (first_row > 0)
+      next_restart_ = static_cast<uint32_t>(int64_t{first_row} * frame.mcus_per_row / restart_interval_mcus - 1) & 7;
     for (int& dc : dc_) dc = 0;
   }
 

@@ -10,29 +10,30 @@ size_t strip_size(const Component& c) {
 }  // namespace
 
 void CoefficientSource::reset(const SourceImage& image, Subsampling subsampling, const Kernels& kernels,
-                              bool keep_all) {
+                              bool keep_all, int first_row, int end_row) {
   frame_ = make_frame(image.width(), image.height(), subsampling);
   keep_all_ = keep_all;
   kernels_ = &kernels;
   strips_.reset(frame_, image, kernels);
-  const int n_strips = keep_all ? frame_.mcu_rows : 1;
+  first_row_ = first_row;
+  const int n_strips = keep_all ? end_row - first_row : 1;
   for (int c = 0; c < frame_.n_components; ++c)
     coefficients_[c].resize(strip_size(frame_.components[c]) * static_cast<size_t>(n_strips));
-  for (int mcu_row = 0; keep_all && mcu_row < frame_.mcu_rows; ++mcu_row) {
+  for (int mcu_row = first_row; keep_all && mcu_row < end_row; ++mcu_row) {
     int16_t* out[3] = {};
-    for (int c = 0; c < frame_.n_components; ++c)
-      out[c] = coefficients_[c].data() + strip_size(frame_.components[c]) * static_cast<size_t>(mcu_row);
+    for (int c = 0; c < frame_.n_components; ++c) out[c] = strip(c, mcu_row);
     strips_.transform(mcu_row, out);
   }
 }
 
+int16_t* CoefficientSource::strip(int c, int mcu_row) {
+  const auto index = static_cast<size_t>(keep_all_ ? mcu_row - first_row_ : 0);
+  return coefficients_[c].data() + strip_size(frame_.components[c]) * index;
+}
+
 void CoefficientSource::load(int mcu_row) {
   int16_t* out[3] = {};
-  for (int c = 0; c < frame_.n_components; ++c) {
-    out[c] = coefficients_[c].data();
-    if (keep_all_) out[c] += strip_size(frame_.components[c]) * static_cast<size_t>(mcu_row);
-    row_[c] = out[c];
-  }
+  for (int c = 0; c < frame_.n_components; ++c) row_[c] = out[c] = strip(c, mcu_row);
   if (!keep_all_) strips_.transform(mcu_row, out);
 }
 

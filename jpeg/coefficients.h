@@ -11,8 +11,10 @@ namespace pac::jpeg {
 
 class CoefficientSource {
  public:
-  // keep_all: transform the whole image now; else each MCU row when row() asks for it. Keeps its buffers.
-  void reset(const SourceImage& image, Subsampling subsampling, const Kernels& kernels, bool keep_all);
+  // Serves the MCU rows [first_row, end_row). keep_all: transform all of them now; else each MCU row when row() asks
+  // for it. Keeps its buffers.
+  void reset(const SourceImage& image, Subsampling subsampling, const Kernels& kernels, bool keep_all, int first_row,
+             int end_row);
 
   const Frame& frame() const { return frame_; }
   // Makes the blocks of that MCU row available through row(). Without keep_all: any earlier row is gone.
@@ -28,10 +30,13 @@ class CoefficientSource {
   }
 
  private:
+  int16_t* strip(int c, int mcu_row);
+
   Frame frame_;
   StripTransform strips_;
   const Kernels* kernels_ = nullptr;
   bool keep_all_ = false;
+  int first_row_ = 0;
   std::vector<int16_t> coefficients_[3];
   const int16_t* row_[3] = {};
 };

@@ -87,6 +87,10 @@ uint64_t encode_bound(int width, int height, Subsampling subsampling, int restar
   return kHeaderBytes + 2 * ((mcus * blocks_in_mcu * kBlockBits + 7) / 8) + 4 * intervals;
 }
 
+int row_restart_interval(int width, Subsampling subsampling) {
+  return make_frame(width, 1, subsampling).mcus_per_row;
+}
+
 Result<QuantTables> adapted_tables(ConstRgbView image, Subsampling subsampling, Tune tune, double quality) {
   EncodeOptions options;
   options.subsampling = subsampling;

@@ -1,6 +1,8 @@
 #include "jpeg/image_encoder.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/kernels/kernels.h"
 #include "jpeg/marker_writer.h"
@@ -31,6 +33,7 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
   if (!(options.dead_zone >= 0.0 && options.dead_zone <= 0.49)) return bad("dead zone is not within 0..0.49");
   if (options.restart_interval_mcus < 0 || options.restart_interval_mcus > 65535)
     return bad("restart interval is not within 0..65535");
+  if (options.threads < 0 || options.threads > 1024) return bad("thread count is not within 0..1024");
   if (!options.tables) return {};
   for (const QuantTable* table : {&options.tables->luma, &options.tables->chroma})
     for (const uint16_t step : *table)
@@ -38,13 +41,48 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
   return {};
 }
 
+// Bands begin where a restart marker stands at the start of a row: predictions and bits begin anew there. Some more
+// than there are threads: their work differs.
+void ImageEncoder::split(const Frame& frame) {
+  constexpr int kBandsPerThread = 4;
+  const int n_threads = options_.threads == 0 ? hardware_thread_count() : options_.threads;
+  const int interval = options_.restart_interval_mcus;
+  int n_bands = 1, period = frame.mcu_rows;
+  if (n_threads > 1 && interval > 0) {
+    period = interval / std::gcd(interval, frame.mcus_per_row);
+    n_bands = std::min(ceil_div(frame.mcu_rows, period), kBandsPerThread * n_threads);
+  }
+  bands_.resize(static_cast<size_t>(n_bands));
+  const int n_periods = ceil_div(frame.mcu_rows, period);
+  for (int i = 0; i < n_bands; ++i) {
+    Band& band = bands_[static_cast<size_t>(i)];
+    band.first_row = static_cast<int>(int64_t{n_periods} * i / n_bands) * period;
+    band.end_row = std::min(static_cast<int>(int64_t{n_periods} * (i + 1) / n_bands) * period, frame.mcu_rows);
+  }
+  if (n_bands > 1 && (!pool_ || pool_->thread_count() != n_threads)) pool_.emplace(n_threads);
+}
+
+template <class Fn>
+void ImageEncoder::for_each_band(Fn&& fn) {
+  if (bands_.size() == 1)
+    fn(bands_[0]);
+  else
+    pool_->for_each(static_cast<int64_t>(bands_.size()), [&](int64_t i) { fn(bands_[static_cast<size_t>(i)]); });
+}
+
 void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options, bool keep_coefficients) {
   options_ = options;
   const Kernels* table = kernels_for(options.isa);
   kernels_ = table != nullptr ? table : &kernels();
   const bool design = !options.tables && options.table_source == TableSource::adapted;
-  source_.reset(image, options.subsampling, *kernels_, keep_coefficients || design || options.trellis);
-  if (design) designer_.measure(source_);
+  split(make_frame(image.width(), image.height(), options.subsampling));
+  for_each_band([&](Band& band) {
+    band.source.reset(image, options.subsampling, *kernels_, keep_coefficients || design || options.trellis,
+                      band.first_row, band.end_row);
+  });
+  if (!design) return;
+  designer_.reset();
+  for (Band& band : bands_) designer_.add_rows(band.source, band.first_row, band.end_row);
 }
 
 QuantTables ImageEncoder::tables_at(double quality, bool scale_tables) const {
@@ -67,26 +105,42 @@ void ImageEncoder::set_up(const QuantTables& tables, double quality) {
   weights_[0] = trellis_weights(tables.luma, reference.luma);
   weights_[1] = trellis_weights(tables.chroma, reference.chroma);
   use_trellis_ = false;
-  const Frame& frame = source_.frame();
-  for (int c = 0; c < frame.n_components; ++c) {
-    const size_t n = source_.n_blocks(c, 0);  // the first MCU row has most
-    levels_.zigzag[c].resize(64 * n);
-    levels_.nonzero[c].resize(n);
+  for (Band& band : bands_) {
+    const Frame& frame = band.source.frame();
+    for (int c = 0; c < frame.n_components; ++c) {
+      const size_t n = band.source.n_blocks(c, band.first_row);  // the first MCU row has most
+      band.levels.zigzag[c].resize(64 * n);
+      band.levels.nonzero[c].resize(n);
+    }
   }
-  tokenizer_.reset(frame, options_.restart_interval_mcus);
 }
 
 // Levels of one MCU row, rounded or, once the costs are known, optimized.
-void ImageEncoder::quantize(int mcu_row) {
-  source_.quantize(mcu_row, quantizers_, levels_);
-  for (int c = 0; use_trellis_ && c < source_.frame().n_components; ++c) {
-    const size_t n = source_.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
+void ImageEncoder::quantize(Band& band, int mcu_row) {
+  band.source.quantize(mcu_row, quantizers_, band.levels);
+  for (int c = 0; use_trellis_ && c < band.source.frame().n_components; ++c) {
+    const size_t n = band.source.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
     for (size_t i = 0; i < n; ++i) {
-      const int16_t* coefficients = source_.row(c) + 64 * i;
+      const int16_t* coefficients = band.source.row(c) + 64 * i;
       trellis_quantize(coefficients, weights_[set], importance_of(c, coefficients), costs_[set],
-                       levels_.zigzag[c].data() + 64 * i, levels_.nonzero[c][i]);
+                       band.levels.zigzag[c].data() + 64 * i, band.levels.nonzero[c][i]);
     }
   }
+}
+
+void ImageEncoder::tokenize(Band& band) {
+  band.tokenizer.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
+  for (int row = band.first_row; row < band.end_row; ++row) {
+    quantize(band, row);
+    band.tokenizer.add_mcu_row(row, band.levels);
+  }
+}
+
+Histogram ImageEncoder::histogram() {
+  for_each_band([&](Band& band) { tokenize(band); });
+  Histogram sum;
+  for (const Band& band : bands_) band.tokenizer.add_histogram(sum);
+  return sum;
 }
 
 // Errors hide in busy blocks of luma; squared error knows nothing of it.
@@ -96,11 +150,13 @@ void ImageEncoder::measure_visibility() {
   if (!is_tuned || options_.tune == Tune::psnr) return;
   double sum = 0;
   size_t n_blocks = 0;
-  for (int row = 0; row < source_.frame().mcu_rows; ++row) {
-    source_.load(row);
-    const size_t n = source_.n_blocks(0, row);
-    for (size_t i = 0; i < n; ++i) sum += visibility(source_.row(0) + 64 * i);
-    n_blocks += n;
+  for (Band& band : bands_) {
+    for (int row = band.first_row; row < band.end_row; ++row) {
+      band.source.load(row);
+      const size_t n = band.source.n_blocks(0, row);
+      for (size_t i = 0; i < n; ++i) sum += visibility(band.source.row(0) + 64 * i);
+      n_blocks += n;
+    }
   }
   mean_visibility_ = sum / static_cast<double>(n_blocks);
 }
@@ -116,15 +172,10 @@ double ImageEncoder::importance_of(int c, const int16_t* coefficients) const {
 void ImageEncoder::measure_costs() {
   ScanTables tables = standard_tables();
   if (options_.huffman == Huffman::optimal) {
-    for (int row = 0; row < source_.frame().mcu_rows; ++row) {
-      quantize(row);
-      tokenizer_.add_mcu_row(row, levels_);
-    }
-    Histogram histogram = tokenizer_.histogram();
-    tokenizer_.reset(source_.frame(), options_.restart_interval_mcus);
-    smooth(histogram.count[kAc0]);
-    smooth(histogram.count[kAc1]);
-    tables = optimal_tables(histogram);
+    Histogram counts = histogram();
+    smooth(counts.count[kAc0]);
+    smooth(counts.count[kAc1]);
+    tables = optimal_tables(counts);
   }
   costs_[0] = ac_costs(tables.spec[kAc0]);
   costs_[1] = ac_costs(tables.spec[kAc1]);
@@ -140,29 +191,40 @@ void ImageEncoder::write_file(const QuantTables& tables, double quality, ByteSin
     quantizers_[0] = make_quantizer(tables.luma, 0.0);
     quantizers_[1] = make_quantizer(tables.chroma, 0.0);
   }
-  const int restart = options_.restart_interval_mcus;
-  const bool one_pass = options_.huffman == Huffman::standard;
-  ScanTables scan_tables = standard_tables();
-  if (one_pass) {
-    write_headers(source_.frame(), tables, scan_tables, restart, sink);
-    writer_.begin(scan_tables, true, sink);
-    walker_.reset(source_.frame(), restart);
-  }
-  for (int row = 0; row < source_.frame().mcu_rows; ++row) {
-    quantize(row);
-    if (one_pass)
-      writer_.write_mcu_row(row, levels_, walker_);
-    else
-      tokenizer_.add_mcu_row(row, levels_);
-  }
-  if (!one_pass) {
-    scan_tables = optimal_tables(tokenizer_.histogram());
-    write_headers(source_.frame(), tables, scan_tables, restart, sink);
-    writer_.begin(scan_tables, false, sink);
-    writer_.write(tokenizer_.begin(), tokenizer_.end());
-  }
-  writer_.finish();
+  // With known tables levels become bits at once; else all tokens wait for the tables made of them.
+  const bool direct = options_.huffman == Huffman::standard;
+  const ScanTables scan_tables = direct ? standard_tables() : optimal_tables(histogram());
+  write_headers(bands_[0].source.frame(), tables, scan_tables, options_.restart_interval_mcus, sink);
+  write_entropy_coded(scan_tables, direct, sink);
   write_end_of_image(sink);
+}
+
+void ImageEncoder::write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink) {
+  if (bands_.size() == 1) {
+    write_band(bands_[0], tables, direct, sink);
+    return;
+  }
+  for_each_band([&](Band& band) {
+    band.bytes.clear();
+    ByteSink own(band.bytes);
+    write_band(band, tables, direct, own);
+  });
+  for (const Band& band : bands_) sink.append(band.bytes);
+}
+
+// A later band begins with its restart marker, the one before ends with padding: together the bytes of one scan.
+void ImageEncoder::write_band(Band& band, const ScanTables& tables, bool direct, ByteSink& sink) {
+  band.writer.begin(tables, direct, sink);
+  if (direct) {
+    band.walker.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
+    for (int row = band.first_row; row < band.end_row; ++row) {
+      quantize(band, row);
+      band.writer.write_mcu_row(row, band.levels, band.walker);
+    }
+  } else {
+    band.writer.write(band.tokenizer.begin(), band.tokenizer.end());
+  }
+  band.writer.finish();
 }
 
 }  // namespace pac::jpeg

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "base/parallel.h"
 #include "jpeg/byte_sink.h"
 #include "jpeg/coefficients.h"
 #include "jpeg/jpeg.h"
@@ -30,25 +32,40 @@ class ImageEncoder {
   void write_file(const QuantTables& tables, double quality, ByteSink& sink);
 
  private:
+  // MCU rows that are coded by one thread: all of them, or those between two restart markers.
+  struct Band {
+    int first_row = 0, end_row = 0;
+    CoefficientSource source;
+    Levels levels;
+    Tokenizer tokenizer;
+    BlockWalker walker;
+    ScanWriter writer;
+    std::vector<uint8_t> bytes;  // of its rows, where there are other bands
+  };
+
   void set_up(const QuantTables& tables, double quality);
-  void quantize(int mcu_row);
+  void split(const Frame& frame);
+  template <class Fn>
+  void for_each_band(Fn&& fn);
+  void quantize(Band& band, int mcu_row);
+  void tokenize(Band& band);
+  Histogram histogram();
+  void write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink);
+  void write_band(Band& band, const ScanTables& tables, bool direct, ByteSink& sink);
   void measure_costs();
   void measure_visibility();
   double importance_of(int c, const int16_t* coefficients) const;
 
   EncodeOptions options_;
   const Kernels* kernels_ = nullptr;
-  CoefficientSource source_;
+  std::vector<Band> bands_;  // at least one
+  std::optional<ThreadPool> pool_;
   TableDesigner designer_;
   BlockQuantizer quantizers_[2];
   TrellisWeights weights_[2];
   AcCosts costs_[2];
   double mean_visibility_ = 0;  // of the luma blocks; 0: all blocks count the same
   bool use_trellis_ = false;    // costs_ are known
-  Levels levels_;
-  Tokenizer tokenizer_;
-  BlockWalker walker_;
-  ScanWriter writer_;
 };
 
 }  // namespace pac::jpeg

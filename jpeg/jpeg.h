@@ -65,8 +65,13 @@ struct EncodeOptions {
   int restart_interval_mcus = 0;  // 0..65535; 0 = none
   double dead_zone = 0.0;         // 0 rounds to nearest; d rounds |x|/q at 0.5 + d (0..0.49) for AC
   bool trellis = false;           // rate-distortion choice of AC levels (then dead_zone only serves the first estimate)
+  int threads = 1;                // 0 = all processors, at most 1024. Work is shared only where restart markers stand
+                                  // between rows of MCUs (see row_restart_interval); results never depend on it
   Isa isa = best_isa();           // results never depend on it
 };
+
+// The restart interval of one row of MCUs, so that rows can be coded and decoded side by side.
+int row_restart_interval(int width, Subsampling subsampling);
 
 // Presets, all with tuned_tables(tune): fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables
 // and dead zone 0.18; best = normal with the trellis, which for ssim and visual lets errors hide in busy blocks.
@@ -165,9 +170,17 @@ struct Info {
 // as unsupported. Errors: truncated, corrupt, limit_exceeded (with the offset of the segment at fault).
 Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits = {});
 
+// How to decode. All results but speed are the same for every isa and number of threads.
+struct DecodeOptions {
+  Limits limits = {};
+  Isa isa = best_isa();
+  int threads = 1;  // 0 = all processors, at most 1024; more than one serve where restart markers stand between rows of MCUs
+};
+
 // RGB of a complete, sound file (gray is spread to three channels). Errors: truncated, corrupt, unsupported,
 // limit_exceeded; then no picture at all.
 Result<RgbImage> decode(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
+Result<RgbImage> decode(std::span<const uint8_t> bytes, const DecodeOptions& options);
 
 // What a damaged file still holds.
 struct LenientImage {
@@ -178,11 +191,13 @@ struct LenientImage {
 // As decode(), but keeps what is there when the entropy-coded data or what follows it is damaged or missing; damage
 // between restart markers costs only those intervals. Errors: as decode, in the headers before the first scan.
 Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
+Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const DecodeOptions& options);
 
 // Strict decoding, reusable: keeps its working memory from file to file.
 class Decoder {
  public:
   explicit Decoder(const Limits& limits = {}, Isa isa = best_isa());
+  explicit Decoder(const DecodeOptions& options);  // threads 0..1024
   ~Decoder();
   Decoder(Decoder&&) noexcept;
   Decoder& operator=(Decoder&&) noexcept;

@@ -3,26 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
-#include "jpeg/markers.h"
 #include "jpeg/tables.h"
 
 namespace pac::jpeg {
 namespace {
 
-constexpr int64_t kNever = INT64_MAX;
 // Real progressive files have about ten; each costs a pass over the picture, however few bytes it has.
 constexpr int kMaxScans = 200;
-
-const char* text_of(BlockError error) {
-  switch (error) {
-    case BlockError::undefined_code:
-      return "entropy-coded data: undefined Huffman code";
-    case BlockError::past_end:
-      return "entropy-coded data: run past the last coefficient";
-    default:
-      return "entropy-coded data: undefined run/size symbol";
-  }
-}
 
 size_t n_padded_blocks(const Component& c) {
   return static_cast<size_t>(c.padded_width_blocks) * static_cast<size_t>(c.padded_height_blocks);
@@ -32,13 +19,6 @@ uint64_t level_bytes(const Frame& frame) {
   uint64_t n = 0;
   for (int c = 0; c < frame.n_components; ++c) n += n_padded_blocks(frame.components[c]);
   return n * 64 * sizeof(int16_t);
-}
-
-// Offset of the next 0xFF that starts a marker, at or after `at`; the end of the file if there is none.
-uint64_t find_marker(std::span<const uint8_t> bytes, uint64_t at) {
-  for (; at + 1 < bytes.size(); ++at)
-    if (bytes[at] == 0xFF && bytes[at + 1] != 0 && bytes[at + 1] != 0xFF) return at;
-  return bytes.size();
 }
 
 }  // namespace
@@ -60,27 +40,28 @@ Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const Limits& lim
                         uint64_t{3} * static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
   if (need > limits.max_bytes)
     return Failure{Error::limit_exceeded, headers.frame_offset, "decoded image needs more memory than the limit"};
+  // Bands have a ring of two MCU rows each, together at most twice the image.
+  use_bands_ = single_scan_ && pool_ && need + 2 * ComponentPlanes::size_bytes(frame, true) <= limits.max_bytes;
   planes_.reset(frame, whole_planes, headers.info.color, *kernels_);
   for (int c = 0; is_progressive_ && c < frame.n_components; ++c)
     levels_[c].assign(n_padded_blocks(frame.components[c]) * 64, 0);
   return {};
 }
 
-// In lenient mode a failure is remembered and passed over.
-Result<void> ScanDecoder::tolerate(const Failure& failure) {
-  if (!lenient_) return failure;
-  if (!first_failure_) first_failure_ = failure;
-  warnings_ += 1;
-  return {};
+void ScanDecoder::set_threads(int n_threads) {
+  if (n_threads == 0) n_threads = hardware_thread_count();
+  if (n_threads <= 1)
+    pool_.reset();
+  else if (!pool_ || pool_->thread_count() != n_threads)
+    pool_.emplace(n_threads);
 }
 
 Result<void> ScanDecoder::decode(RgbView out, bool lenient) {
-  lenient_ = lenient;
-  first_failure_.reset();
-  warnings_ = 0;
+  damage_ = {};
+  damage_.lenient = lenient;
   position_ = first_scan_.data_offset;
   std::fill(std::begin(decoded_), std::end(decoded_), false);
-  if (auto done = decode_scans(out); !done.ok()) PAC_CHECK(tolerate(done.failure()));
+  if (auto done = decode_scans(out); !done.ok()) PAC_CHECK(damage_.tolerate(done.failure()));
   if (is_progressive_)
     transform_progressive(out);
   else if (!single_scan_)
@@ -138,19 +119,14 @@ Result<void> ScanDecoder::set_up_component(const ScanHeader& header, int i, Scan
   if (needs_ac) {
     PAC_TRY(sc.ac_table, set_up_table(header, 1, header.components[i].ac_table));
   }
-  if (is_progressive_) {
-    if (p.is_dc()) decoded_[sc.index] = true;
-    sc.blocks_per_row = static_cast<size_t>(sc.component->padded_width_blocks);
-    sc.levels = levels_[sc.index].data();
+  if (!is_progressive_) {
+    if (decoded_[sc.index]) return Failure{Error::corrupt, header.offset, "second scan of a component"};
+    decoded_[sc.index] = true;
     return {};
   }
-  if (decoded_[sc.index]) return Failure{Error::corrupt, header.offset, "second scan of a component"};
-  decoded_[sc.index] = true;
-  sc.blocks_per_row = static_cast<size_t>(kBatchMcus * sc.h);
-  levels_[i].resize(64 * sc.blocks_per_row * static_cast<size_t>(sc.v));
-  last_[i].resize(sc.blocks_per_row * static_cast<size_t>(sc.v));
-  sc.levels = levels_[i].data();
-  sc.last = last_[i].data();
+  if (p.is_dc()) decoded_[sc.index] = true;
+  sc.blocks_per_row = static_cast<size_t>(sc.component->padded_width_blocks);
+  sc.levels = levels_[sc.index].data();
   return {};
 }
 
@@ -163,145 +139,28 @@ Result<void> ScanDecoder::set_up(const ScanHeader& header, Scan& scan) {
   const bool is_interleaved = header.n_components > 1;
   scan.mcus_per_row = is_interleaved ? frame.mcus_per_row : scan.components[0].component->width_blocks;
   scan.mcu_rows = is_interleaved ? frame.mcu_rows : scan.components[0].component->height_blocks;
-  scan.restart_interval = scan.to_restart = reader_.headers().info.restart_interval_mcus;
+  scan.restart_interval = reader_.headers().info.restart_interval_mcus;
   return {};
 }
 
 Result<void> ScanDecoder::decode_scan(const ScanHeader& header, RgbView out) {
   Scan scan;
   PAC_CHECK(set_up(header, scan));
-  entropy_.start(bytes_, header.data_offset);
   const int mcu_height = header.n_components > 1 ? 8 * reader_.headers().frame.v_max : 8;
-  for (int row = 0; row < scan.mcu_rows; ++row) {
-    if (is_progressive_) {
-      PAC_CHECK(decode_progressive_row(row, scan));
-      continue;
+  if (use_bands_) {
+    const BandedScan job{bytes_, &scan, header.data_offset, &reader_.headers().frame, reader_.headers().info.color};
+    if (const auto end = bands_.decode(job, *pool_, *kernels_, out)) {
+      position_ = *end;
+      return {};
     }
-    PAC_CHECK(decode_sequential_row(row, scan));
+  }
+  mcus_.start(bytes_, scan, header.data_offset, damage_);
+  for (int row = 0; row < scan.mcu_rows; ++row) {
+    PAC_CHECK(mcus_.decode_row(row, planes_));
     if (single_scan_) write_finished_rows(row, scan.mcu_rows, mcu_height, out);
   }
-  position_ = entropy_.byte_offset();
+  position_ = mcus_.byte_offset();
   return {};
-}
-
-Result<void> ScanDecoder::decode_sequential_row(int mcu_row, Scan& scan) {
-  for (int mcu = 0; mcu < scan.mcus_per_row; mcu += kBatchMcus) {
-    const int n = std::min(kBatchMcus, scan.mcus_per_row - mcu);
-    for (int i = 0; i < scan.n_components; ++i) {
-      std::fill(levels_[i].begin(), levels_[i].end(), int16_t{0});
-      std::fill(last_[i].begin(), last_[i].end(), uint8_t{0});
-    }
-    for (int j = 0; j < n; ++j) {
-      for (ScanComponent& sc : scan.components) sc.first_block = static_cast<size_t>(j * sc.h);
-      PAC_CHECK(read_next_mcu(scan));
-    }
-    for (int i = 0; i < scan.n_components; ++i) transform_batch(mcu_row, mcu, n, scan.components[i]);
-  }
-  return {};
-}
-
-Result<void> ScanDecoder::decode_progressive_row(int mcu_row, Scan& scan) {
-  for (int mcu = 0; mcu < scan.mcus_per_row; ++mcu) {
-    for (ScanComponent& sc : scan.components)
-      sc.first_block = static_cast<size_t>(mcu_row * sc.v) * sc.blocks_per_row + static_cast<size_t>(mcu * sc.h);
-    PAC_CHECK(read_next_mcu(scan));
-  }
-  return {};
-}
-
-// Skips what is lost; looks for a place to go on after a failure.
-Result<void> ScanDecoder::read_next_mcu(Scan& scan) {
-  const int64_t mcu = scan.next_mcu++;
-  if (mcu < scan.resume) return {};
-  if (auto done = read_mcu(scan); !done.ok()) {
-    PAC_CHECK(tolerate(done.failure()));
-    scan.resume = resume_at(mcu, scan);
-  }
-  return {};
-}
-
-Result<void> ScanDecoder::read_mcu(Scan& scan) {
-  if (scan.restart_interval > 0) {
-    if (scan.to_restart == 0) {
-      PAC_CHECK(pass_restart(scan.next_restart));
-      scan.next_restart = (scan.next_restart + 1) & 7;
-      scan.to_restart = scan.restart_interval;
-      scan.eob_run = 0;
-      for (ScanComponent& sc : scan.components) sc.dc = 0;
-    }
-    scan.to_restart -= 1;
-  }
-  entropy_.prepare_mcu();
-  const BlockError error = read_blocks(scan);
-  if (entropy_.overrun()) {
-    const uint64_t at = find_marker(bytes_, entropy_.byte_offset());
-    if (at == bytes_.size()) return Failure{Error::truncated, at, "file ends inside the entropy-coded data"};
-    return Failure{Error::corrupt, at, "marker inside the entropy-coded data"};
-  }
-  if (error != BlockError::none) return Failure{Error::corrupt, entropy_.byte_offset(), text_of(error)};
-  return {};
-}
-
-// The blocks of each component in turn [T.81 A.2.3].
-BlockError ScanDecoder::read_blocks(Scan& scan) {
-  for (int i = 0; i < scan.n_components; ++i) {
-    ScanComponent& sc = scan.components[i];
-    for (int by = 0; by < sc.v; ++by) {
-      for (int bx = 0; bx < sc.h; ++bx) {
-        const size_t block = sc.first_block + static_cast<size_t>(by) * sc.blocks_per_row + static_cast<size_t>(bx);
-        int16_t* levels = sc.levels + 64 * block;
-        const BlockError error = scan.is_progressive
-                                     ? read_progressive_block(entropy_, scan.progression, sc.dc_table, sc.ac_table,
-                                                              sc.dc, scan.eob_run, levels)
-                                     : read_block(entropy_, *sc.dc_table, *sc.ac_table, sc.dc, levels, sc.last[block]);
-        if (error != BlockError::none) return error;
-      }
-    }
-  }
-  return BlockError::none;
-}
-
-// Expects RSTm at the reader's position, perhaps behind fill bytes, or behind bytes that nobody needed (a warning).
-Result<void> ScanDecoder::pass_restart(int expected) {
-  const uint64_t due = entropy_.byte_offset(), at = find_marker(bytes_, due);
-  if (at == bytes_.size()) return Failure{Error::truncated, at, "file ends where a restart marker is due"};
-  if (bytes_[at + 1] != kRst0 + expected)
-    return Failure{Error::corrupt, at, "restart marker is missing or out of order"};
-  if (bytes_[due] != 0xFF) warnings_ += 1;
-  entropy_.restart_at(at + 2);
-  return {};
-}
-
-// After a failure at MCU number `failed_mcu`: sets the reader behind the next usable restart marker and tells the MCU
-// that follows it. A marker at most 5 numbers ahead of the one that is due means lost intervals; else it is an old one.
-int64_t ScanDecoder::resume_at(int64_t failed_mcu, Scan& scan) {
-  if (scan.restart_interval == 0) return kNever;
-  // Where the marker that is due stands: before the failed MCU if it was missing there, else after its interval.
-  const int64_t interval = scan.restart_interval;
-  const int64_t due_mcu = scan.to_restart == 0 ? failed_mcu : (failed_mcu / interval + 1) * interval;
-  const auto due = static_cast<int>((due_mcu / interval - 1) & 7);
-  uint64_t at = find_marker(bytes_, entropy_.byte_offset());
-  for (; at < bytes_.size() && is_restart(bytes_[at + 1]); at = find_marker(bytes_, at + 2)) {
-    const int number = bytes_[at + 1] - kRst0, ahead = (number - due) & 7;
-    if (ahead > 5) continue;
-    entropy_.restart_at(at + 2);
-    for (ScanComponent& sc : scan.components) sc.dc = 0;
-    scan.eob_run = 0;
-    scan.to_restart = scan.restart_interval;
-    scan.next_restart = (number + 1) & 7;
-    return due_mcu + ahead * interval;
-  }
-  entropy_.restart_at(at);
-  return kNever;
-}
-
-void ScanDecoder::transform_batch(int mcu_row, int first_mcu, int n_mcus, const ScanComponent& sc) {
-  for (int by = 0; by < sc.v; ++by) {
-    const size_t first = static_cast<size_t>(by) * sc.blocks_per_row;
-    kernels_->block.idct_islow(sc.levels + 64 * first, sc.steps, sc.last + first, static_cast<size_t>(n_mcus * sc.h),
-                               planes_.block_row(sc.index, mcu_row * sc.v + by) + 8 * first_mcu * sc.h,
-                               planes_.stride(sc.index));
-  }
 }
 
 void ScanDecoder::transform_progressive(RgbView out) {

@@ -73,14 +73,17 @@ void TableDesigner::add(const int16_t* coefficients, size_t n_blocks, int& dc, H
   }
 }
 
-void TableDesigner::measure(CoefficientSource& source) {
+void TableDesigner::reset() {
   luma_.reset();
   chroma_.reset();
-  int dc[3] = {0, 0, 0};
-  for (int row = 0; row < source.frame().mcu_rows; ++row) {
+  for (int& dc : dc_) dc = 0;
+}
+
+void TableDesigner::add_rows(CoefficientSource& source, int first_row, int end_row) {
+  for (int row = first_row; row < end_row; ++row) {
     source.load(row);
     for (int c = 0; c < source.frame().n_components; ++c)
-      add(source.row(c), source.n_blocks(c, row), dc[c], c == 0 ? luma_ : chroma_);
+      add(source.row(c), source.n_blocks(c, row), dc_[c], c == 0 ? luma_ : chroma_);
   }
 }
 

@@ -14,8 +14,10 @@ class TableDesigner {
  public:
   static constexpr int kKinds = 7;  // of blocks, by activity
 
-  // `source` must keep all rows.
-  void measure(CoefficientSource& source);
+  // Forgets the last image.
+  void reset();
+  // Adds MCU rows; bands of an image in order.
+  void add_rows(CoefficientSource& source, int first_row, int end_row);
   // For each frequency the step with the least bits + kBitsPerSquaredStep * sum((error / reference)^2), the reference
   // being tuned_reference(tune, quality) and the bits the entropy of the levels at that frequency.
   QuantTables at_quality(Tune tune, double quality) const;
@@ -34,6 +36,7 @@ class TableDesigner {
   uint16_t best_step(const Histograms& of, size_t natural, double reference) const;
 
   Histograms luma_, chroma_;
+  int dc_[3] = {0, 0, 0};  // of the block before
 };
 
 }  // namespace pac::jpeg

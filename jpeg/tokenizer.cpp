@@ -2,9 +2,9 @@
 
 namespace pac::jpeg {
 
-void Tokenizer::reset(const Frame& frame, int restart_interval_mcus) {
+void Tokenizer::reset(const Frame& frame, int restart_interval_mcus, int first_row) {
   frame_ = &frame;
-  walker_.reset(frame, restart_interval_mcus);
+  walker_.reset(frame, restart_interval_mcus, first_row);
   tokens_.clear();
   for (Histogram& counts : counts_) counts = {};
 }
@@ -26,12 +26,10 @@ void Tokenizer::add_mcu_row(int mcu_row, const Levels& levels) {
   tokens_.set_end(out);
 }
 
-Histogram Tokenizer::merged(const Histogram& a, const Histogram& b) {
-  Histogram sum;
+void Tokenizer::add_histogram(Histogram& to) const {
   for (int table = 0; table < kTableCount; ++table)
     for (int symbol = 0; symbol < 256; ++symbol)
-      sum.count[table][symbol] = a.count[table][symbol] + b.count[table][symbol];
-  return sum;
+      to.count[table][symbol] += counts_[0].count[table][symbol] + counts_[1].count[table][symbol];
 }
 
 }  // namespace pac::jpeg

@@ -11,16 +11,16 @@ namespace pac::jpeg {
 // Tokens of MCU rows, and how often each symbol occurs. Keeps its buffer from scan to scan.
 class Tokenizer {
  public:
-  void reset(const Frame& frame, int restart_interval_mcus);
+  // first_row: of the MCU rows to come; a restart marker stands before it, or the scan begins with it.
+  void reset(const Frame& frame, int restart_interval_mcus, int first_row = 0);
   void add_mcu_row(int mcu_row, const Levels& levels);
 
   const Token* begin() const { return tokens_.begin(); }
   const Token* end() const { return tokens_.end(); }
-  Histogram histogram() const { return merged(counts_[0], counts_[1]); }
+  // Adds to the counts in `to`.
+  void add_histogram(Histogram& to) const;
 
  private:
-  static Histogram merged(const Histogram& a, const Histogram& b);
-
   const Frame* frame_ = nullptr;
   BlockWalker walker_;
   TokenBuffer tokens_;

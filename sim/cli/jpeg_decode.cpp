@@ -8,6 +8,13 @@
 namespace pac::cli {
 namespace {
 
+jpeg::DecodeOptions decode_options(const Options& options) {
+  jpeg::DecodeOptions decode;
+  decode.isa = options.isa;
+  decode.threads = options.threads;
+  return decode;
+}
+
 int print_summary(const Options& options, const RgbImage& image) {
   if (!options.json) return kDone;
   sim::JsonWriter json;
@@ -21,7 +28,7 @@ int print_summary(const Options& options, const RgbImage& image) {
 // What could be read is written, then the damage is reported as in strict mode.
 int decode_damaged(const Options& options, const std::string& in, const std::string& out,
                    std::span<const uint8_t> bytes) {
-  const auto decoded = jpeg::decode_lenient(bytes, {}, options.isa);
+  const auto decoded = jpeg::decode_lenient(bytes, decode_options(options));
   if (!decoded.ok()) return data_error(in, decoded.failure());
   if (const int code = write_picture(out, decoded->image.view()); code != kDone) return code;
   if (decoded->failure) return data_error(in, *decoded->failure);
@@ -44,7 +51,7 @@ int run_jpeg_decode(Args args) {
   const auto bytes = read_file(in);
   if (!bytes.ok()) return data_error(in, bytes.failure());
   if (lenient) return decode_damaged(options, in, out, *bytes);
-  const auto image = jpeg::decode(*bytes, {}, options.isa);
+  const auto image = jpeg::decode(*bytes, decode_options(options));
   if (!image.ok()) return data_error(in, image.failure());
   if (const int code = write_picture(out, image->view()); code != kDone) return code;
   return print_summary(options, *image);

@@ -63,6 +63,7 @@ int make_encode_options(const Options& options, const Request& request, jpeg::En
   encode = jpeg::options_for(request.effort, request.tune, request.quality);
   encode.subsampling = request.subsampling;
   encode.restart_interval_mcus = request.restart;
+  encode.threads = options.threads;
   encode.isa = options.isa;
   if (options.given("--huffman")) encode.huffman = request.huffman;
   if (request.tables.empty()) return kDone;

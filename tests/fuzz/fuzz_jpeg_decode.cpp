@@ -1,4 +1,4 @@
-// Any bytes as a JPEG file: information, strict, lenient and reused decoding.
+// Any bytes as a JPEG file: information, strict, lenient, reused and threaded decoding.
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -29,6 +29,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }
   // Every pixel is looked at: uninitialized ones show under MemorySanitizer, lost ones under the comparison.
   const uint64_t lenient_hash = lenient.ok() ? pac::hash_pixels(lenient->image.view()) : 0;
+  // Two threads: the same pixels and the same complaints.
+  pac::jpeg::DecodeOptions two_threads;
+  two_threads.limits = limits;
+  two_threads.threads = 2;
+  const auto shared = pac::jpeg::decode_lenient(bytes, two_threads);
+  require(shared.ok() == lenient.ok());
+  if (shared.ok()) {
+    require(pac::hash_pixels(shared->image.view()) == lenient_hash && shared->warnings == lenient->warnings);
+    require(shared->failure.has_value() == lenient->failure.has_value());
+  }
   if (strict.ok()) {
     require(lenient.ok() && !lenient->failure.has_value() && pac::hash_pixels(strict->view()) == lenient_hash);
     require(strict->width() == info->width && strict->height() == info->height);

@@ -1,0 +1,135 @@
+#include "jpeg/band_decoder.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "jpeg/markers.h"
+
+namespace pac::jpeg {
+namespace {
+
+int64_t n_intervals(const Scan& scan) {
+  const int64_t n_mcus = int64_t{scan.mcus_per_row} * scan.mcu_rows;
+  return (n_mcus + scan.restart_interval - 1) / scan.restart_interval;
+}
+
+// Rows from one row that begins with a restart interval to the next such row.
+int period_rows(const Scan& scan) {
+  return scan.restart_interval / std::gcd(scan.restart_interval, scan.mcus_per_row);
+}
+
+int mcu_height(const BandedScan& job) {
+  return job.scan->n_components > 1 ? 8 * job.frame->v_max : 8;
+}
+
+// Blocks from one MCU row to the next.
+int rows_of_blocks(const BandedScan& job, int c) {
+  return job.scan->n_components > 1 ? job.frame->components[c].v : 1;
+}
+
+// The next marker at or after `at`, or null.
+const uint8_t* next_marker(const uint8_t* at, const uint8_t* end) {
+  while (at < end) {
+    at = static_cast<const uint8_t*>(std::memchr(at, 0xFF, static_cast<size_t>(end - at)));
+    if (at == nullptr || at + 1 == end) return nullptr;
+    if (at[1] != 0 && at[1] != 0xFF) return at;
+    at += at[1] == 0 ? 2 : 1;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+// True if exactly the markers that are due stand in the data, in order.
+bool BandDecoder::find_restarts(const BandedScan& job) {
+  restarts_.clear();
+  const uint8_t *const begin = job.bytes.data(), *const end = begin + job.bytes.size();
+  const uint8_t* at = begin + job.data_offset;
+  const auto n_due = static_cast<uint64_t>(n_intervals(*job.scan) - 1);
+  while ((at = next_marker(at, end)) != nullptr && is_restart(at[1])) {
+    if (restarts_.size() == n_due || at[1] != (kRst0 | (restarts_.size() & 7))) return false;
+    restarts_.push_back(static_cast<uint64_t>(at - begin));
+    at += 2;
+  }
+  return restarts_.size() == n_due;
+}
+
+void BandDecoder::split(const BandedScan& job, int n_threads, const Kernels& kernels) {
+  constexpr int kBandsPerThread = 4;  // their work differs
+  const Scan& scan = *job.scan;
+  const int period = period_rows(scan), n_periods = ceil_div(scan.mcu_rows, period);
+  const int n_bands = std::min(n_periods, kBandsPerThread * n_threads);
+  while (bands_.size() < static_cast<size_t>(n_bands)) bands_.emplace_back(kernels);
+  bands_.erase(bands_.begin() + n_bands, bands_.end());
+  for (int i = 0; i < n_bands; ++i) {
+    Band& band = bands_[static_cast<size_t>(i)];
+    band.first_row = static_cast<int>(int64_t{n_periods} * i / n_bands) * period;
+    band.end_row = std::min(static_cast<int>(int64_t{n_periods} * (i + 1) / n_bands) * period, scan.mcu_rows);
+    band.first_interval = int64_t{band.first_row} * scan.mcus_per_row / scan.restart_interval;
+    band.sound = false;
+  }
+}
+
+// The first pixel row of a band and the last one lean on samples of two bands: write_seam() makes them.
+bool BandDecoder::decode_rows(const BandedScan& job, Band& band, Damage& damage, RgbView out) const {
+  const int height = mcu_height(job), n_rows = job.scan->mcu_rows;
+  for (int row = band.first_row; row < band.end_row; ++row) {
+    if (!band.mcus.decode_row(row, band.planes).ok() || damage.warnings > 0) return false;
+    const bool is_top = row == band.first_row;
+    for (int c = 0; is_top && c < job.frame->n_components; ++c) {
+      const uint8_t* first = band.planes.block_row(c, row * rows_of_blocks(job, c));
+      band.top[c].assign(first, first + band.planes.stride(c));
+    }
+    const int begin = row == 0 ? 0 : row * height + (is_top ? 1 : -1);
+    const int end = row + 1 == n_rows ? out.height : (row + 1) * height - 1;
+    band.planes.write_rgb(begin, end, out);
+  }
+  return true;
+}
+
+// Whether the data end where the next band's marker stands, with nothing between.
+bool BandDecoder::ends_well(const BandedScan& job, const Band& band) const {
+  if (band.end_row == job.scan->mcu_rows) return true;
+  const int64_t next = int64_t{band.end_row} * job.scan->mcus_per_row / job.scan->restart_interval;
+  const uint64_t end = band.mcus.byte_offset(), marker = restarts_[static_cast<size_t>(next - 1)];
+  return end <= marker && job.bytes[end] == 0xFF && find_marker(job.bytes, end) == marker;
+}
+
+void BandDecoder::decode_band(const BandedScan& job, Band& band, const Kernels& kernels, RgbView out) const {
+  Damage damage;
+  band.planes.reset(*job.frame, false, job.color, kernels);
+  const uint64_t offset =
+      band.first_row == 0 ? job.data_offset : restarts_[static_cast<size_t>(band.first_interval - 1)] + 2;
+  band.mcus.start(job.bytes, *job.scan, offset, damage, band.first_interval);
+  band.sound = decode_rows(job, band, damage, out) && ends_well(job, band);
+}
+
+void BandDecoder::write_seam(const BandedScan& job, Band& above, const Band& below, const Kernels& kernels,
+                             RgbView out) {
+  seam_.reset(*job.frame, false, job.color, kernels);
+  for (int c = 0; c < job.frame->n_components; ++c) {
+    const int first = below.first_row * rows_of_blocks(job, c);
+    const ptrdiff_t stride = seam_.stride(c), last = 7 * stride;
+    std::memcpy(seam_.block_row(c, first - 1) + last, above.planes.block_row(c, first - 1) + last,
+                static_cast<size_t>(stride));
+    std::memcpy(seam_.block_row(c, first), below.top[c].data(), static_cast<size_t>(stride));
+  }
+  const int y = below.first_row * mcu_height(job);
+  seam_.write_rgb(y - 1, y + 1, out);
+}
+
+std::optional<uint64_t> BandDecoder::decode(const BandedScan& job, ThreadPool& pool, const Kernels& kernels,
+                                            RgbView out) {
+  const Scan& scan = *job.scan;
+  if (scan.restart_interval == 0 || period_rows(scan) >= scan.mcu_rows || !find_restarts(job)) return {};
+  split(job, pool.thread_count(), kernels);
+  pool.for_each(static_cast<int64_t>(bands_.size()),
+                [&](int64_t i) { decode_band(job, bands_[static_cast<size_t>(i)], kernels, out); });
+  for (const Band& band : bands_)
+    if (!band.sound) return {};
+  for (size_t i = 1; i < bands_.size(); ++i) write_seam(job, bands_[i - 1], bands_[i], kernels, out);
+  return bands_.back().mcus.byte_offset();
+}
+
+}  // namespace pac::jpeg

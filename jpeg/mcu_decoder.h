@@ -1,0 +1,98 @@
+// MCUs of a scan: bits -> levels -> samples, with restarts and what damage leaves of them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/kernels/kernels.h"
+#include "jpeg/component_planes.h"
+#include "jpeg/frame.h"
+#include "jpeg/progressive.h"
+#include "jpeg/scan_reader.h"
+
+namespace pac::jpeg {
+
+// What was wrong with a file.
+struct Damage {
+  bool lenient = false;
+  std::optional<Failure> first;
+  int warnings = 0;  // oddities, and in lenient mode failures
+  // In lenient mode a failure is remembered and passed over.
+  Result<void> tolerate(const Failure& failure) {
+    if (!lenient) return failure;
+    if (!first) first = failure;
+    warnings += 1;
+    return {};
+  }
+};
+
+// What remains the same for all blocks of a component in a scan, and PRED.
+struct ScanComponent {
+  const Component* component = nullptr;
+  int index = 0;     // in the frame
+  int h = 1, v = 1;  // blocks in an MCU
+  const HuffmanDecoder* dc_table = nullptr;
+  const HuffmanDecoder* ac_table = nullptr;
+  const uint16_t* steps = nullptr;
+  int dc = 0;
+  // The first block of the MCU at hand, and blocks from one row of blocks to the next: of the batch, or of all levels
+  // of the component.
+  size_t first_block = 0, blocks_per_row = 0;
+  int16_t* levels = nullptr;  // natural order
+  uint8_t* last = nullptr;    // zigzag positions behind which all is 0; null in progressive scans
+};
+
+struct Scan {
+  int n_components = 0;
+  ScanComponent components[kMaxComponents];
+  bool is_progressive = false;  // levels of whole components are collected, not turned into samples batch by batch
+  Progression progression;
+  uint32_t eob_run = 0;
+  int mcus_per_row = 0, mcu_rows = 0;
+  int restart_interval = 0;  // MCUs, 0 = none
+  int to_restart = 0;        // MCUs before the next marker
+  int next_restart = 0;      // its number
+  int64_t next_mcu = 0;      // number of the next MCU
+  int64_t resume = 0;        // MCUs before this one are lost
+};
+
+// Offset of the next 0xFF that starts a marker, at or after `at`; the end of the file if there is none.
+uint64_t find_marker(std::span<const uint8_t> bytes, uint64_t at);
+
+// Keeps its buffers from scan to scan. start(), then rows in order.
+class McuDecoder {
+ public:
+  explicit McuDecoder(const Kernels& kernels) : kernels_(&kernels) {}
+
+  // At the start of the restart interval number `interval`, whose data begin at `offset`. Levels and `last` of a
+  // sequential scan are set here. `damage` must outlive the rows, as the bytes and what `scan` points to.
+  void start(std::span<const uint8_t> bytes, const Scan& scan, uint64_t offset, Damage& damage, int64_t interval = 0);
+  // One MCU row. In lenient mode never fails.
+  Result<void> decode_row(int mcu_row, ComponentPlanes& planes);
+  // Behind the last MCU read: its next byte, or the marker.
+  uint64_t byte_offset() const { return entropy_.byte_offset(); }
+
+ private:
+  // MCUs whose levels are read before they are transformed: few enough to stay in the first-level cache.
+  static constexpr int kBatchMcus = 16;
+
+  Result<void> collect_row(int mcu_row);
+  Result<void> read_next_mcu();
+  Result<void> read_mcu();
+  BlockError read_blocks();
+  Result<void> pass_restart(int expected);
+  int64_t resume_at(int64_t failed_mcu);
+  void transform_batch(int mcu_row, int first_mcu, int n_mcus, const ScanComponent& sc, ComponentPlanes& planes);
+
+  const Kernels* kernels_;
+  std::span<const uint8_t> bytes_;
+  Scan scan_;
+  Damage* damage_ = nullptr;
+  EntropyReader entropy_;
+  std::vector<int16_t> levels_[kMaxComponents];
+  std::vector<uint8_t> last_[kMaxComponents];
+};
+
+}  // namespace pac::jpeg
