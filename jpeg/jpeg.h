@@ -174,7 +174,8 @@ Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits = {}
 struct DecodeOptions {
   Limits limits = {};
   Isa isa = best_isa();
-  int threads = 1;  // 0 = all processors, at most 1024; more than one serve where restart markers stand between rows of MCUs
+  int threads =
+      1;  // 0 = all processors, at most 1024; more than one serve where restart markers stand between rows of MCUs
 };
 
 // RGB of a complete, sound file (gray is spread to three channels). Errors: truncated, corrupt, unsupported,

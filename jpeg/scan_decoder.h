@@ -59,8 +59,8 @@ class ScanDecoder {
   BandDecoder bands_;
   bool use_bands_ = false;
   std::optional<ThreadPool> pool_;  // where several threads decode
-  HuffmanDecoder tables_[2][4];    // [class][destination]
-  HuffmanSpec table_specs_[2][4];  // that tables_ were made of
+  HuffmanDecoder tables_[2][4];     // [class][destination]
+  HuffmanSpec table_specs_[2][4];   // that tables_ were made of
   uint16_t steps_[kMaxComponents][64] = {};
   std::vector<int16_t> levels_[kMaxComponents];
 };
