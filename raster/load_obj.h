@@ -9,6 +9,7 @@
 #include "base/file_io.h"
 #include "base/image.h"
 #include "base/result.h"
+#include "raster/node_animation.h"
 #include "raster/scene.h"
 
 namespace pac::raster {
@@ -28,8 +29,16 @@ struct Warning {
   uint64_t byte_offset = 0;  // in the OBJ or MTL
 };
 
+// A camera that the file holds, as make_camera() wants it.
+struct LoadedCamera {
+  glm::vec3 eye{0}, target{0, 0, -1}, up{0, 1, 0};
+  float fov_y_rad = 0.6f, near_plane = 0.1f, far_plane = 100;
+};
+
 struct LoadedScene {
   Scene scene;
+  NodeAnimation animation;            // moves scene.objects; empty where nothing moves
+  std::vector<LoadedCamera> cameras;  // in the file's order of nodes, at time 0
   std::vector<Warning> warnings;
 };
 

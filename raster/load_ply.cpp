@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "raster/fit_camera.h"
+#include "raster/load_gltf.h"
 #include "raster/load_normals.h"
 #include "raster/load_ply_header.h"
 #include "raster/load_text.h"
@@ -352,6 +353,7 @@ Result<LoadedScene> load_ply(std::span<const uint8_t> bytes, const AssetSource& 
 Result<LoadedScene> load_model(std::span<const uint8_t> bytes, const AssetSource& assets, const Limits& limits) {
   if (bytes.size() >= 4 && bytes[0] == 'p' && bytes[1] == 'l' && bytes[2] == 'y' && bytes[3] <= ' ')
     return load_ply(bytes, assets, limits);
+  if (is_gltf(bytes)) return load_gltf(bytes, assets, limits);
   return load_obj(bytes, assets, limits);
 }
 

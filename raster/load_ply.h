@@ -25,7 +25,7 @@ namespace pac::raster {
 // - limit_exceeded: the file is longer than limits.max_bytes, more than limits.max_triangles.
 Result<LoadedScene> load_ply(std::span<const uint8_t> bytes, const AssetSource& assets, const Limits& limits = {});
 
-// By content: PLY if the file starts with "ply", else OBJ.
+// By content: PLY if the file starts with "ply", glTF if with "glTF" or "{", else OBJ.
 Result<LoadedScene> load_model(std::span<const uint8_t> bytes, const AssetSource& assets, const Limits& limits = {});
 
 // Little-endian binary PLY: positions, normals and texture coordinates if any vertex has one, RGBA, faces with their
