@@ -19,9 +19,10 @@ bool has_gltf();
 // normalized, strided and sparse accessors), the node hierarchy, animations of nodes (the first one; LoadedScene::
 // animation, which moves Scene::objects; the scene comes posed at time 0), vertex colors, metallic-roughness materials
 // (mapping in raster/README.md), PNG and JPEG textures in data URIs, buffer views or files of `assets`, perspective
-// cameras, KHR_lights_punctual, KHR_materials_unlit. Points and lines, further UV sets, skins and morph targets are
-// left out with a warning. Vertices without normals stay so: their faces are drawn flat [s.3.7.2.1]. Fails, byte_offset
-// being where the value that is wrong ends in the JSON (an array or object: where it begins), with
+// cameras, KHR_lights_punctual, KHR_materials_unlit, KHR_mesh_quantization, KHR_texture_transform. Points and lines,
+// further UV sets, skins and morph targets are left out with a warning. Vertices without normals stay so: their faces
+// are drawn flat [s.3.7.2.1]. Fails, byte_offset being where the value that is wrong ends in the JSON (an array or
+// object: where it begins), with
 // - truncated, corrupt: the GLB container ("chunk is longer than the file", ...), "malformed JSON", "accessor reaches
 //   outside its buffer view", "index out of range", "nodes form a cycle", "number is not finite", ...;
 // - unsupported: an extension in extensionsRequired that is not one of the above, by its name; Draco and meshopt

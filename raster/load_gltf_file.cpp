@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pac::raster {
 namespace {
@@ -52,7 +53,8 @@ Result<Container> open_container(std::span<const uint8_t> bytes) {
 }
 
 // Extensions that change nothing where they are not understood, or that are.
-constexpr std::string_view kUnderstood[] = {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_mesh_quantization"};
+constexpr std::string_view kUnderstood[] = {"KHR_lights_punctual", "KHR_materials_unlit", "KHR_mesh_quantization",
+                                            "KHR_texture_transform"};
 
 // Failures carry static texts: one for each extension that files require.
 struct Refusal {
@@ -69,7 +71,6 @@ constexpr Refusal kRefusals[] = {
     PAC_REFUSAL("EXT_texture_webp"),
     PAC_REFUSAL("EXT_texture_avif"),
     PAC_REFUSAL("MSFT_texture_dds"),
-    PAC_REFUSAL("KHR_texture_transform"),
     PAC_REFUSAL("KHR_materials_pbrSpecularGlossiness"),
     PAC_REFUSAL("KHR_techniques_webgl"),
     PAC_REFUSAL("KHR_materials_variants"),
@@ -89,7 +90,7 @@ Result<void> check_extensions(const GltfFile& file) {
     if (std::find(std::begin(kUnderstood), std::end(kUnderstood), name.text()) != std::end(kUnderstood)) continue;
     for (const Refusal& refusal : kRefusals)
       if (refusal.name == name.text()) return file.failure(Error::unsupported, name, refusal.text);
-    return file.failure(Error::unsupported, name, "requires an extension that nobody here knows");
+    return file.failure(Error::unsupported, name, "requires an unknown extension");
   }
   return {};
 }
@@ -220,7 +221,7 @@ Result<GltfFile> read_gltf_file(std::span<const uint8_t> bytes, const AssetSourc
     failure.byte_offset += container.json_offset;
     return failure;
   }
-  file.json = std::move(*tree);
+  file.json = std::make_unique<const JsonTree>(std::move(*tree));
   if (!file.root().is_object()) return file.failure(Error::corrupt, file.root(), "JSON is not an object");
   const Json asset = file.root()["asset"];
   if (!asset["version"].is_string()) return file.failure(Error::corrupt, file.root(), "no asset version: not glTF 2.0");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,15 +18,15 @@ namespace pac::raster {
 inline constexpr uint32_t kNoIndex = 0xFFFFFFFFu;
 
 struct GltfFile {
-  JsonTree json;
-  uint64_t json_offset = 0;         // of the JSON in the file
-  std::span<const uint8_t> binary;  // the GLB's second chunk
-  std::vector<Bytes> loaded;        // buffers that are not the GLB's
+  std::unique_ptr<const JsonTree> json;  // stays where it is when the file is moved: every Json points into it
+  uint64_t json_offset = 0;              // of the JSON in the file
+  std::span<const uint8_t> binary;       // the GLB's second chunk
+  std::vector<Bytes> loaded;             // buffers that are not the GLB's
   std::vector<std::span<const uint8_t>> buffers;
   // The top-level arrays, so that a number finds its object at once.
   std::vector<Json> accessors, views, meshes, nodes, materials, textures, images, samplers, cameras;
 
-  Json root() const { return Json(json, 0); }
+  Json root() const { return Json(*json, 0); }
   Failure failure(Error error, const Json& where, const char* text) const {
     return {error, json_offset + where.offset(), text};
   }

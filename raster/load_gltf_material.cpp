@@ -9,6 +9,7 @@
 namespace pac::raster {
 namespace {
 
+constexpr uint64_t kMostTexcoordSets = 1000;
 constexpr uint64_t kNearest = 9728, kClamp = 33071, kMirror = 33648, kRepeat = 10497;
 
 float encoded(double linear) {
@@ -49,6 +50,7 @@ class Materials {
   };
   Result<GltfMaterial> load(const Json& json);
   Result<void> load_texture(const Json& info, GltfMaterial& out);
+  Result<void> load_transform(const Json& transform, GltfMaterial& out);
   Result<int32_t> image_texture(uint32_t image, bool mirror_s, bool mirror_t);
   Result<Bytes> image_bytes(uint32_t image, const char*& fault);
   void warn(const char* text, const Json& where, std::string_view name = {}) {
@@ -107,8 +109,8 @@ Result<void> Materials::load_texture(const Json& info, GltfMaterial& out) {
   PAC_TRY(const uint32_t number, get_index(file_, info, "index", file_.textures.size()));
   if (number == kNoIndex) return file_.failure(Error::corrupt, info, "texture without an index");
   PAC_TRY(const uint64_t set, get_integer(file_, info, "texCoord", 0));
-  out.texcoord_set = static_cast<uint32_t>(std::min<uint64_t>(set, 1000));
-  if (info["extensions"]["KHR_texture_transform"].exists()) warn("texture transform is not applied", info);
+  out.texcoord_set = static_cast<uint32_t>(std::min<uint64_t>(set, kMostTexcoordSets));
+  PAC_CHECK(load_transform(info["extensions"]["KHR_texture_transform"], out));
   const Json texture = file_.textures[number];
   PAC_TRY(const uint32_t sampler, get_index(file_, texture, "sampler", file_.samplers.size()));
   Wraps wraps;
@@ -129,8 +131,25 @@ Result<void> Materials::load_texture(const Json& info, GltfMaterial& out) {
     return {};
   }
   PAC_TRY(out.material.texture, image_texture(image, mirror_s, mirror_t));
-  if (mirror_s) out.texcoord_scale[0] = 0.5f;
-  if (mirror_t) out.texcoord_scale[1] = 0.5f;
+  for (double& value : out.texcoord_map[0]) value *= mirror_s ? 0.5 : 1;
+  for (double& value : out.texcoord_map[1]) value *= mirror_t ? 0.5 : 1;
+  return {};
+}
+
+// Offset * rotation * scale; the rotation is counter-clockwise where v points down [KHR_texture_transform].
+Result<void> Materials::load_transform(const Json& transform, GltfMaterial& out) {
+  if (!transform.exists()) return {};
+  double offset[2] = {0, 0}, scale[2] = {1, 1};
+  PAC_CHECK(get_numbers(file_, transform, "offset", offset, 2));
+  PAC_CHECK(get_numbers(file_, transform, "scale", scale, 2));
+  const double turn = std::fmod(transform["rotation"].number(0), 2 * kPi);
+  const double angle = std::isfinite(turn) ? turn : 0;
+  const double cosine = exact_cos(angle), sine = exact_sin(angle);
+  const double map[2][3] = {{cosine * scale[0], sine * scale[1], offset[0]},
+                            {-sine * scale[0], cosine * scale[1], offset[1]}};
+  for (int row = 0; row < 2; ++row) std::copy_n(map[row], 3, out.texcoord_map[row]);
+  PAC_TRY(const uint64_t set, get_integer(file_, transform, "texCoord", out.texcoord_set));
+  out.texcoord_set = static_cast<uint32_t>(std::min<uint64_t>(set, kMostTexcoordSets));
   return {};
 }
 

@@ -74,8 +74,11 @@ void append_vertices(const Attributes& a, const Affine& world, const double norm
       for (int row = 0; row < 3; ++row)
         vertex.normal[row] = length > 0 && std::isfinite(length) ? static_cast<float>(turned[row] / length) : 0.0f;
     }
-    for (size_t k = 0; k < 2 && a.texcoord.width > 0; ++k)
-      vertex.texcoord[k] = a.texcoord.values[2 * i + k] * material.texcoord_scale[k];
+    for (size_t k = 0; k < 2 && a.texcoord.width > 0; ++k) {
+      const double* row = material.texcoord_map[k];
+      const float* t = a.texcoord.values.data() + 2 * i;
+      vertex.texcoord[k] = static_cast<float>((row[0] * t[0] + row[1] * t[1]) + row[2]);
+    }
     for (size_t c = 0; c < 3; ++c) {
       const double scale = material.material.lit ? 1.0 : double{material.base_color[c]};
       const double linear = a.color.width > 0 ? double{a.color.values[a.color.width * i + c]} : 1.0;
@@ -102,7 +105,9 @@ void corners_of(uint64_t mode, size_t i, size_t out[3]) {
 
 Result<void> add_primitive(const GltfFile& file, const Json& primitive, const Affine& world,
                            const std::vector<GltfMaterial>& materials, const Limits& limits, LoadedScene& loaded) {
-  if (primitive["extensions"]["KHR_draco_mesh_compression"].exists() && !primitive["attributes"].first().exists())
+  PAC_TRY(const uint32_t positions, get_index(file, primitive["attributes"], "POSITION", file.accessors.size()));
+  if (primitive["extensions"]["KHR_draco_mesh_compression"].exists() &&
+      (positions == kNoIndex || !file.accessors[positions]["bufferView"].exists()))
     return file.failure(Error::unsupported, primitive, "mesh is compressed by KHR_draco_mesh_compression");
   PAC_TRY(const uint64_t mode, get_integer(file, primitive, "mode", kTriangles));
   if (mode > kFan) return file.failure(Error::corrupt, primitive, "unknown mode of a primitive");

@@ -14,8 +14,10 @@ namespace pac::raster {
 struct GltfMaterial {
   Material material;
   uint32_t texcoord_set = 0;
-  float texcoord_scale[2] = {1, 1};  // 0.5 where the texture was mirrored into one twice as large
-  float base_color[3] = {1, 1, 1};   // sRGB-encoded; goes into the vertices' colors of unlit materials
+  // Rows of the affine map from the file's texture coordinates to ours: KHR_texture_transform, then halves where the
+  // texture was mirrored into one twice as large.
+  double texcoord_map[2][3] = {{1, 0, 0}, {0, 1, 0}};
+  float base_color[3] = {1, 1, 1};  // sRGB-encoded; goes into the vertices' colors of unlit materials
 };
 
 // One for each of file.materials, then the default material. Textures go into the scene, warnings beside it.

@@ -8,8 +8,8 @@
 namespace pac::raster {
 namespace {
 
-// The arc cosine by the half-angle tangent and its series is not needed: slerp wants sines of multiples of the angle
-// between two unit quaternions, and that angle by bisection of the exact cosine, which falls on [0, pi/2].
+// The angle in [0, pi/2] with that cosine, by bisection of the exact cosine, which falls there: base/exact_math.h has
+// no arc cosine, and libm's digits vary.
 double angle_of_cosine(double cosine) {
   double low = 0, high = kPi / 2;
   for (int i = 0; i < 52; ++i) {

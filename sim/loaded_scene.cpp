@@ -71,24 +71,30 @@ struct Cluster {
   }
 };
 
-// Cluster number of each vertex; UINT32_MAX where the position is not finite.
-std::vector<uint32_t> cluster_vertices(const Mesh& mesh, const Box& box, double cell, std::vector<Cluster>& clusters) {
+// The grid of the clustering and what fell into it.
+struct Clustering {
+  Box box;
+  double cell = 1;
+  std::vector<Cluster> clusters;
+  std::vector<uint32_t> numbers;  // cluster of each vertex; UINT32_MAX where the position is not finite
+};
+
+// Puts those of the vertices [first, first + count) that have no cluster yet into clusters of their own.
+void cluster_vertices(const Mesh& mesh, size_t first, size_t count, Clustering& out) {
   std::unordered_map<uint64_t, uint32_t> number_of_cell;
-  std::vector<uint32_t> numbers(mesh.vertices.size(), UINT32_MAX);
-  for (size_t i = 0; i < mesh.vertices.size(); ++i) {
+  for (size_t i = first; i < first + count; ++i) {
     const Vertex& vertex = mesh.vertices[i];
-    if (!finite(vertex.position)) continue;
+    if (!finite(vertex.position) || out.numbers[i] != UINT32_MAX) continue;
     uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double offset = std::clamp((double{vertex.position[axis]} - box.low[axis]) / cell, 0.0, 1e6);
+      const double offset = std::clamp((double{vertex.position[axis]} - out.box.low[axis]) / out.cell, 0.0, 1e6);
       key = key << 21 | static_cast<uint64_t>(offset);  // at most 1024 cells a side: 11 bits each
     }
-    const auto [entry, added] = number_of_cell.try_emplace(key, static_cast<uint32_t>(clusters.size()));
-    if (added) clusters.emplace_back();
-    clusters[entry->second].add(vertex);
-    numbers[i] = entry->second;
+    const auto [entry, added] = number_of_cell.try_emplace(key, static_cast<uint32_t>(out.clusters.size()));
+    if (added) out.clusters.emplace_back();
+    out.clusters[entry->second].add(vertex);
+    out.numbers[i] = entry->second;
   }
-  return numbers;
 }
 
 // The corners of `face` as clusters, neighbors that fell together merged; fewer than three: the polygon vanished.
@@ -126,12 +132,20 @@ bool add_coarse_model(SceneSet& scene, int cells) {
   const double side = box.longest_side();
   if (!(side > 0) || !std::isfinite(side)) return false;
 
-  std::vector<Cluster> clusters;
-  const std::vector<uint32_t> numbers = cluster_vertices(fine, box, side * (1 + 1e-9) / cells, clusters);
+  Clustering clustering{box, side * (1 + 1e-9) / cells, {}, std::vector<uint32_t>(fine.vertices.size(), UINT32_MAX)};
+  // Vertices that move together stay together; they may not become one with others.
+  std::vector<raster::Object> objects = scene.fine.objects;
+  for (raster::Object& object : objects) {
+    const size_t before = clustering.clusters.size();
+    cluster_vertices(fine, object.first_vertex, object.vertex_count, clustering);
+    object.first_vertex = static_cast<uint32_t>(before);
+    object.vertex_count = static_cast<uint32_t>(clustering.clusters.size() - before);
+  }
+  cluster_vertices(fine, 0, fine.vertices.size(), clustering);
   Mesh coarse;
-  for (const Cluster& cluster : clusters) coarse.vertices.push_back(cluster.mean());
+  for (const Cluster& cluster : clustering.clusters) coarse.vertices.push_back(cluster.mean());
   for (const Face& face : fine.faces) {
-    const std::vector<uint32_t> corners = clustered_corners(fine, face, numbers);
+    const std::vector<uint32_t> corners = clustered_corners(fine, face, clustering.numbers);
     if (corners.size() < 3) continue;
     coarse.faces.push_back(
         {static_cast<uint32_t>(coarse.indices.size()), static_cast<uint32_t>(corners.size()), face.material});
@@ -140,6 +154,7 @@ bool add_coarse_model(SceneSet& scene, int cells) {
   if (coarse.faces.empty() || coarse.faces.size() >= fine.faces.size()) return false;
   scene.coarse = scene.fine;
   scene.coarse.mesh = std::move(coarse);
+  scene.coarse.objects = std::move(objects);
   return true;
 }
 

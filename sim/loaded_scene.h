@@ -16,7 +16,8 @@ raster::Camera fit_camera(const raster::Scene& scene, int frame, float aspect);
 
 // Fills scene.coarse by vertex clustering [Rossignac and Borrel 1993]: vertices in the same cell of a cubic grid of
 // `cells` (2..1024) along the longest side of the bounding box become their mean; polygons that keep fewer than
-// three distinct corners vanish. False (coarse left empty) where nothing would remain or nothing was saved.
+// three distinct corners vanish. Objects, whose ranges of vertices must be disjoint, keep vertices of their own. False
+// (coarse left empty) where nothing would remain or nothing was saved.
 bool add_coarse_model(SceneSet& scene, int cells = 24);
 
 }  // namespace pac::sim

@@ -1,4 +1,4 @@
-// The OBJ and PLY models of Debian's assimp-testmodels: each loads or is refused by name, and those that load are
+// The OBJ, PLY and glTF models of Debian's assimp-testmodels: each loads or is refused by name, and those that load are
 // drawn.
 #include <doctest/doctest.h>
 
@@ -13,6 +13,7 @@
 #include "geomcodec/geomcodec.h"
 #include "jpeg/jpeg.h"
 #include "raster/fit_camera.h"
+#include "raster/load_gltf.h"
 #include "raster/load_ply.h"
 #include "raster/renderer.h"
 #include "tests/support/mesh_zoo.h"
@@ -94,6 +95,28 @@ const Expected kExpected[] = {
     {"PLY/issue623.ply", 0, 0, "no faces: point clouds are not drawn"},
     {"PLY/points.ply", 0, 0, "no faces: point clouds are not drawn"},
     {"PLY/pond.0.ply", 0, 0, "no faces: point clouds are not drawn"},
+    {"glTF/BoxTextured-glTF-Binary/BoxTextured.glb", 0, 0, "version of the GLB container is not 2"},
+    {"glTF/BoxTextured-glTF/BoxTextured.gltf", 0, 0, "version of glTF is not 2"},
+    {"glTF/CesiumMilkTruck/CesiumMilkTruck.gltf", 0, 0, "no asset version: not glTF 2.0"},
+    {"glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 121496, 0, ""},
+    {"glTF2/BoxBadNormals-glTF-Binary/BoxBadNormals.glb", 12, 0, ""},
+    {"glTF2/BoxTexcoords-glTF/boxTexcoords.gltf", 12, 1, ""},
+    {"glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", 12, 1, ""},
+    {"glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf", 12, 1, ""},
+    {"glTF2/BoxTextured-glTF-techniqueWebGL/BoxTextured.gltf", 0, 0, "requires an unknown extension"},
+    {"glTF2/BoxTextured-glTF/BoxTextured.gltf", 12, 1, ""},
+    {"glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", 0, 0, "number is not finite"},
+    {"glTF2/ClearCoat-glTF/ClearCoatTest.gltf", 37116, 1, ""},
+    {"glTF2/IndexOutOfRange/AllIndicesOutOfRange.gltf", 0, 0, "index out of range"},
+    {"glTF2/IndexOutOfRange/IndexOutOfRange.gltf", 0, 0, "index out of range"},
+    {"glTF2/MissingBin/BoxTextured.gltf", 0, 0, "buffer's file cannot be read"},
+    {"glTF2/RecursiveNodes/RecursiveNodes.gltf", 0, 0, "nodes form a cycle"},
+    {"glTF2/TestNoRootNode/NoScene.gltf", 0, 0, "names something that the file does not have"},
+    {"glTF2/draco/2CylinderEngine.gltf", 0, 0, "requires the extension KHR_draco_mesh_compression"},
+    {"glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf", 12, 0, ""},
+    {"glTF2/issue_3269/texcoord_crash.gltf", 10, 1, ""},
+    {"glTF2/textureTransform/TextureTransformTest.gltf", 24, 5, ""},
+    {"glTF2/wrongTypes/badUint.gltf", 0, 0, "not a whole number of at least 0"},
     {"invalid/empty.obj", 0, 0, "no faces: points and lines alone are not drawn"},
     {"invalid/empty.ply", 0, 0, "no faces: points and lines alone are not drawn"},
     {"invalid/malformed.obj", 0, 0, "index 0: indices start at 1"},
@@ -101,10 +124,11 @@ const Expected kExpected[] = {
 };
 
 bool is_model(const std::filesystem::path& path) {
-  return path.extension() == ".obj" || path.extension() == ".ply";
+  const bool is_gltf = path.extension() == ".gltf" || path.extension() == ".glb";
+  return path.extension() == ".obj" || path.extension() == ".ply" || (is_gltf && pac::raster::has_gltf());
 }
 
-TEST_CASE("every OBJ and PLY model of assimp loads with its faces and textures, or is refused by a named error") {
+TEST_CASE("every OBJ, PLY and glTF model of assimp loads with its faces and textures, or is refused by a named error") {
   if (!have_models()) return;
   size_t n_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {
@@ -135,7 +159,7 @@ TEST_CASE("what loads is drawn: the fitted camera shows all of it, every frame o
   REQUIRE(renderer.ok());
   for (const Expected& expected : kExpected) {
     const std::filesystem::path path = kModels + "/" + expected.file;
-    if (expected.n_faces == 0 || !std::filesystem::exists(path)) continue;
+    if (expected.n_faces == 0 || !std::filesystem::exists(path) || !is_model(path)) continue;
     if (std::string(expected.file) == "OBJ/number_formats.obj") continue;  // its one triangle has no area
     CAPTURE(expected.file);
     const auto loaded = load(path);
@@ -167,7 +191,9 @@ TEST_CASE("what loads is drawn: the fitted camera shows all of it, every frame o
 
 TEST_CASE("models keep their faces through the geometry codec") {
   if (!have_models()) return;
-  for (const char* name : {"OBJ/spider.obj", "OBJ/WusonOBJ.obj", "OBJ/regr01.obj", "PLY/cube_uv.ply"}) {
+  for (const char* name : {"OBJ/spider.obj", "OBJ/WusonOBJ.obj", "OBJ/regr01.obj", "PLY/cube_uv.ply",
+                           "glTF2/BoxTextured-glTF/BoxTextured.gltf"}) {
+    if (!is_model(name)) continue;
     CAPTURE(name);
     const auto loaded = load(kModels + "/" + name);
     REQUIRE(loaded.ok());

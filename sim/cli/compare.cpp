@@ -153,6 +153,7 @@ int run_compare(Args args) {
     return options.usage_error("--bytes chooses the quality itself: leave --quality out");
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
+  source->pose(request.frame, kStillFramesPerSecond);
   if (request.still.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
     sim::add_coarse_model(source->set);
   request.still.target_bytes = static_cast<uint64_t>(request.bytes);

@@ -72,7 +72,7 @@ int run_geom_encode(Args args) {
   std::string in, out;
   geomcodec::AttributeBits bits;
   geomcodec::EncodeOptions encode;
-  options.positional("IN", in, "OBJ or PLY, or the name of a built-in scene");
+  options.positional("IN", in, "OBJ, PLY or glTF, or the name of a built-in scene");
   options.text("-o|--output", "OUT.pgc", out, "the stream; - is stdout", true);
   options.integer("--position-bits", "N", bits.position, 1, 16, "of the grid along the longest side (16)");
   options.integer("--normal-bits", "N", bits.normal, 0, 16,

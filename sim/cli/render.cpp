@@ -42,7 +42,8 @@ void declare(Options& options, Request& request) {
   options.text("-o|--output", "OUT.png", request.out, ".png or .ppm; - is stdout (PNG)");
   options.integer("--width", "W", request.width, 1, 32768, "pixels (the scene's own)");
   options.integer("--height", "H", request.height, 1, 32768, "pixels (the scene's own)");
-  options.integer("--frame", "N", request.frame, 0, 1000000, "of the camera path (0)");
+  options.integer("--frame", "N", request.frame, 0, 1000000,
+                  "of the camera path, and of the file's animation at 20 a second (0)");
   options.choice<Level>("--quality", request.quality, {{"high", Level::high}, {"low", Level::low}},
                         "H or L of the scene's own split; the options below change it further");
   options.choice<bool>("--texture", request.texture, {{"on", true}, {"off", false}}, "off: mean colors");
@@ -171,8 +172,9 @@ int run_render(Args args) {
   if (const auto code = options.parse(args)) return *code;
   if (const std::string problem = usage_problem(options, request); !problem.empty())
     return options.usage_error(problem);
-  const auto source = load_scene(request.scene, options);
+  auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
+  source->pose(request.frame, kStillFramesPerSecond);
   if (!options.given("--width")) request.width = source->set.width;
   if (!options.given("--height")) request.height = source->set.height;
   const auto split = quality_of(options, request, source->set);

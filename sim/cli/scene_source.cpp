@@ -47,6 +47,12 @@ raster::Camera SceneSource::camera(int frame, float aspect) const {
   return builtin != nullptr ? builtin->camera(frame, aspect) : sim::fit_camera(set.fine, frame, aspect);
 }
 
+void SceneSource::pose(int frame, int frames_per_second) {
+  if (animation.empty()) return;
+  const double step = 1.0 / frames_per_second;
+  raster::pose_objects(animation, frame * step, (frame - 1) * step, set.fine);
+}
+
 std::optional<SceneSource> load_scene(const std::string& name, const Options& options) {
   SceneSource source;
   source.name = name;
@@ -71,6 +77,7 @@ std::optional<SceneSource> load_scene(const std::string& name, const Options& op
   }
   if (!options.quiet) print_warnings(name, loaded->warnings);
   source.set = sim::scene_set_from(std::move(loaded->scene));
+  source.animation = std::move(loaded->animation);
   return source;
 }
 
