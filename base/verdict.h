@@ -41,4 +41,11 @@ const char* verdict_text(Verdict verdict);  // "the first is better", ..., "metr
 constexpr double kVerdictSsimulacra2Points = 2;
 Verdict compare_quality(const QualityArm& first, const QualityArm& second);
 
+// The same from what the frames come to: where curves are interpolated there are no frames.
+struct QualitySummary {
+  uint64_t size_bytes = 0;
+  FrameSummary ssimulacra2, flip, psnr_hvs_m_db;
+};
+Verdict compare_summaries(const QualitySummary& first, const QualitySummary& second);
+
 }  // namespace pac

@@ -3,8 +3,6 @@
 #include "sim/report_diagram.h"
 #include "sim/report_markup.h"
 #include "sim/report_pictures.h"
-#include "sim/report_script.h"
-#include "sim/report_style.h"
 
 namespace pac::sim {
 
@@ -16,12 +14,6 @@ Text paragraphs(const std::vector<Text>& texts, const char* style = "") {
   Text html;
   for (const Text& text : texts) html += html_tag("p", style, html_escaped(text)) + "\n";
   return html;
-}
-
-Text section(const Text& id, const Text& number, const Text& title, const Text& content) {
-  const Text label = number.empty() ? "" : html_tag("span", "class=\"number\"", html_escaped(number));
-  return "<section id=\"" + id + "\"><div class=\"wrap\">\n" + html_tag("h2", "", label + html_escaped(title)) + "\n" +
-         content + "</div></section>\n";
 }
 
 const char* verdict_class(Verdict verdict) {
@@ -165,22 +157,22 @@ Text table_section(const Report& report) {
   const Text files =
       "<p>The same rows for machines: <a href=\"table1.csv\">table1.csv</a>, <a "
       "href=\"table1.json\">table1.json</a>.</p>";
-  return section("table-1", "Table I", "Image-based against polygon-assisted compression",
-                 html_tag("div", region, grid) + paragraphs(report.table_notes) + files +
-                     html_tag("h3", "", "What the table says, checked") + findings_list(claims));
+  return html_section("table-1", "Table I", "Image-based against polygon-assisted compression",
+                      html_tag("div", region, grid) + paragraphs(report.table_notes) + files +
+                          html_tag("h3", "", "What the table says, checked") + findings_list(claims));
 }
 
 Text figure_section(const ReportFigure& figure) {
-  return section(figure.id, figure.number, figure.title,
-                 paragraphs(figure.paragraphs) + findings_list(figure.findings) + figure_pictures(figure));
+  return html_section(figure.id, figure.number, figure.title,
+                      paragraphs(figure.paragraphs) + findings_list(figure.findings) + figure_pictures(figure));
 }
 
 Text plots_section(const Report& report) {
   Text plots;
   for (const Plot& plot : report.plots)
     plots += html_tag("figure", "", html_tag("p", "", html_escaped(plot.title)) + plot_svg(plot)) + "\n";
-  return section("plots", "", "Rate and distortion",
-                 paragraphs(report.plot_paragraphs) + html_tag("div", "class=\"plots\"", "\n" + plots));
+  return html_section("plots", "", "Rate and distortion",
+                      paragraphs(report.plot_paragraphs) + html_tag("div", "class=\"plots\"", "\n" + plots));
 }
 
 Text methods_section(const Report& report) {
@@ -188,14 +180,14 @@ Text methods_section(const Report& report) {
   for (const Text& method : report.methods) items += html_tag("li", "", html_escaped(method)) + "\n";
   Text commands;
   for (const Text& line : report.command_lines) commands += line + "\n";
-  return section(
+  return html_section(
       "methods", "", "Methods",
       html_tag("ul", "class=\"plain\"", "\n" + items) +
           (commands.empty() ? "" : html_tag("h3", "", "To reproduce") + html_tag("pre", "", html_escaped(commands))));
 }
 
 Text idea_section() {
-  return section(
+  return html_section(
       "idea", "Figure 1", "Polygons for edges and shading, JPEG for the rest",
       std::string("<div class=\"diagram scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Figure 1\">") +
           Text(kFlowDiagram) + "</div>\n" +
@@ -208,23 +200,14 @@ Text idea_section() {
 }  // namespace
 
 std::string report_html(const Report& report) {
-  Text html =
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n";
-  html += html_tag("title", "", html_escaped(report.title)) + "\n" + html_tag("style", "", kReportStyle) +
-          "\n</head>\n<body>\n";
-  html += std::string("<a class=\"skip\" href=\"#main\">To the content</a>\n") + masthead(report) + contents(report);
-  html += "<main id=\"main\">\n";
-  if (!report.table.columns.empty()) html += idea_section() + table_section(report);
-  for (const ReportFigure& figure : report.figures) html += figure_section(figure);
-  if (!report.plots.empty()) html += plots_section(report);
+  Text main;
+  if (!report.table.columns.empty()) main += idea_section() + table_section(report);
+  for (const ReportFigure& figure : report.figures) main += figure_section(figure);
+  if (!report.plots.empty()) main += plots_section(report);
   if (!report.findings.empty())
-    html += section("claims", "", "The paper’s claims, one by one", findings_list(report.findings));
-  if (!report.methods.empty()) html += methods_section(report);
-  html += std::string("</main>\n<footer><div class=\"wrap\">") + html_escaped(report.footer) + "</div></footer>\n";
-  html += html_tag("script", "", kReportScript) + "\n</body>\n</html>\n";
-  return html;
+    main += html_section("claims", "", "The paper’s claims, one by one", findings_list(report.findings));
+  if (!report.methods.empty()) main += methods_section(report);
+  return html_page(report.title, masthead(report) + contents(report), main, html_escaped(report.footer));
 }
 
 }  // namespace pac::sim

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "sim/report_script.h"
+#include "sim/report_style.h"
+
 namespace pac::sim {
 
 std::string html_escaped(std::string_view text) {
@@ -36,6 +39,26 @@ std::string html_tag(const char* name, const std::string& attributes, const std:
 
 std::string html_attribute(const char* name, std::string_view value) {
   return std::string(name) + "=\"" + html_escaped(value) + "\" ";
+}
+
+std::string html_section(const std::string& id, const std::string& number, const std::string& title,
+                         const std::string& content) {
+  const std::string label = number.empty() ? "" : html_tag("span", "class=\"number\"", html_escaped(number));
+  return "<section id=\"" + id + "\"><div class=\"wrap\">\n" + html_tag("h2", "", label + html_escaped(title)) + "\n" +
+         content + "</div></section>\n";
+}
+
+std::string html_page(const std::string& title, const std::string& head, const std::string& main,
+                      const std::string& footer) {
+  std::string html =
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n";
+  html +=
+      html_tag("title", "", html_escaped(title)) + "\n" + html_tag("style", "", kReportStyle) + "\n</head>\n<body>\n";
+  html += "<a class=\"skip\" href=\"#main\">To the content</a>\n" + head + "<main id=\"main\">\n" + main +
+          "</main>\n<footer><div class=\"wrap\">" + footer + "</div></footer>\n";
+  return html + html_tag("script", "", kReportScript) + "\n</body>\n</html>\n";
 }
 
 std::string decimal_text(double number, int digits) {

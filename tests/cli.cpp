@@ -73,14 +73,6 @@ TEST_CASE("every command explains itself with an example that starts with its ow
   CHECK(folder.pac("jpeg --help").code == 0);
 }
 
-TEST_CASE("what is not there yet is not listed and not accepted") {
-  const CliFolder folder;
-  for (const char* name : {"sweep"}) {
-    CHECK(!contains(folder.pac("--help").out, name));
-    check_usage_error(folder.pac(name), "unknown command");
-  }
-}
-
 TEST_CASE("mistyped commands, options and values get the nearest right one suggested") {
   const CliFolder folder;
   check_usage_error(folder.pac("rendr room"), "did you mean 'render'?");

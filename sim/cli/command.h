@@ -31,6 +31,7 @@ int run_geom_encode(Args args);
 int run_geom_decode(Args args);
 int run_geom_info(Args args);
 int run_animate(Args args);
+int run_sweep(Args args);
 int run_metrics(Args args);
 int run_scenes(Args args);
 int run_isa(Args args);

@@ -20,6 +20,7 @@ constexpr Command kCommands[] = {
     {"render", "draws one picture of a scene", run_render},
     {"compare", "one still, image-based and polygon-assisted at matched bytes", run_compare},
     {"animate", "a sequence, image-based and polygon-assisted at matched bytes", run_animate},
+    {"sweep", "rate-distortion curves over scenes, splits, codecs and rates", run_sweep},
     {"jpeg encode", "writes a baseline JPEG file", run_jpeg_encode},
     {"jpeg decode", "writes a JPEG file's picture as PNG, PPM or PGM", run_jpeg_decode},
     {"jpeg info", "markers, frame, tables, estimated quality, metadata", run_jpeg_info},

@@ -106,6 +106,10 @@ void Options::positional(const char* meta, std::string& target, const char* help
   positionals_.push_back({meta, help, &target});
 }
 
+void Options::positionals(const char* meta, std::vector<std::string>& targets, const char* help) {
+  positionals_.push_back({meta, help, nullptr, &targets});
+}
+
 void Options::flag(const char* names, bool& target, const char* help) {
   add(names, "", help).set = [&target](const std::string&) {
     target = true;
@@ -140,6 +144,26 @@ void Options::real(const char* names, const char* meta, double& target, double l
     if (!parse_number(value, number) || !(number >= least && number <= most))
       return "'" + value + "' is not a number in " + range_text(least, most);
     target = number;
+    return std::string();
+  };
+}
+
+void Options::reals(const char* names, const char* meta, std::vector<double>& targets, double least, double most,
+                    const char* help) {
+  Option& option = add(names, meta, help);
+  option.set = [&targets, least, most](const std::string& value) {
+    std::vector<double> numbers;
+    for (size_t begin = 0; begin <= value.size();) {
+      const size_t end = std::min(value.find(',', begin), value.size());
+      const std::string word = value.substr(begin, end - begin);
+      double number = 0;
+      if (!parse_number(word, number) || !(number >= least && number <= most))
+        return "'" + word + "' is not a number in " + range_text(least, most);
+      if (std::find(numbers.begin(), numbers.end(), number) != numbers.end()) return "'" + word + "' is there twice";
+      numbers.push_back(number);
+      begin = end + 1;
+    }
+    targets = std::move(numbers);
     return std::string();
   };
 }
@@ -234,10 +258,13 @@ std::optional<int> Options::parse(Args args) {
       only_positionals = true;
     } else if (!only_positionals && argument.size() > 1 && argument[0] == '-') {
       problem = parse_option(argument, args, next);
-    } else if (n_positionals == positionals_.size()) {
-      problem = "unexpected argument '" + argument + "'";
-    } else {
+    } else if (n_positionals < positionals_.size() && positionals_[n_positionals].target != nullptr) {
       *positionals_[n_positionals++].target = argument;
+    } else if (!positionals_.empty() && positionals_.back().targets != nullptr) {
+      positionals_.back().targets->push_back(argument);
+      n_positionals = positionals_.size();
+    } else {
+      problem = "unexpected argument '" + argument + "'";
     }
     if (!problem.empty()) return usage_error(problem);
   }

@@ -29,14 +29,18 @@ class Options {
   // command: "jpeg encode"; summary: one line; example: a command line that works, without prompt.
   Options(std::string command, std::string summary, std::string example);
 
-  // A required operand; `more` collects the operands after the declared ones.
+  // A required operand; `positionals` (declared last) collects one and more.
   void positional(const char* meta, std::string& target, const char* help);
+  void positionals(const char* meta, std::vector<std::string>& targets, const char* help);
 
   // `names`: "--width", or a short and a long one: "-o|--output".
   void flag(const char* names, bool& target, const char* help);
   void text(const char* names, const char* meta, std::string& target, const char* help, bool required = false);
   void integer(const char* names, const char* meta, int& target, int least, int most, const char* help);
   void real(const char* names, const char* meta, double& target, double least, double most, const char* help);
+  // Numbers joined by commas, at least one, none twice.
+  void reals(const char* names, const char* meta, std::vector<double>& targets, double least, double most,
+             const char* help);
   template <class T>
   void choice(const char* names, T& target, std::initializer_list<Choice<T>> choices, const char* help) {
     std::vector<std::string> labels;
@@ -75,6 +79,7 @@ class Options {
   struct Positional {
     std::string meta, help;
     std::string* target;
+    std::vector<std::string>* targets = nullptr;  // instead of target
   };
 
   Option& add(const char* names, const char* meta, const char* help);
