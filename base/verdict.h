@@ -19,6 +19,8 @@ struct QualityScores {
 // `cap` count as `cap`: a PSNR of +infinity must not make a mean infinite. No values: 0 and 0.
 struct FrameSummary {
   double mean = 0, worst_5_percent = 0;
+
+  bool operator==(const FrameSummary&) const = default;
 };
 enum class Better : uint8_t { larger, smaller };
 FrameSummary summarize_frames(std::span<const double> values, Better better, double cap = 100);

@@ -269,7 +269,7 @@ Text masthead(const SweepTable& table, const SweepGains& gains) {
           Text("Every curve is one way to code the same frames H: by the codec alone, or with polygons drawn by the "
                "client and the difference coded. ") +
               decimal_text(static_cast<double>(table.points.size()), 0) +
-              " measurements; bytes of the whole code, first picture and headers included.");
+              " measurements; bytes of everything sent, first picture, headers and packets included.");
   return html_tag(
              "header", "class=\"masthead\"",
              html_tag("div", "class=\"wrap\"", html_tag("div", "class=\"words\"", "\n" + words) + highlights(gains))) +

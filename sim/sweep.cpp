@@ -62,7 +62,10 @@ std::string number_text(double number) {
 
 std::string numbers_text(const std::vector<double>& numbers) {
   std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ",") + number_text(number);
+  for (const double number : numbers) {
+    if (!text.empty()) text += ',';
+    text += number_text(number);
+  }
   return text;
 }
 
@@ -87,7 +90,10 @@ std::string splits_text(const SweepPlan& plan) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
     }
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : names) {
+    if (!text.empty()) text += ',';
+    text += name;
+  }
   return text;
 }
 
@@ -241,7 +247,8 @@ std::string plan_text(const SweepPlan& plan) {
   text += "--splits " + splits_text(plan) + " --codecs ";
   bool is_first = true, has_jpeg = false, has_mpeg1 = false, has_video = false;
   for (const SweepCodec codec : plan.codecs) {
-    text += (is_first ? "" : ",") + std::string(sweep_codec_name(codec));
+    if (!is_first) text += ',';
+    text += sweep_codec_name(codec);
     is_first = false;
     has_jpeg = has_jpeg || codec != SweepCodec::mpeg1;
     has_mpeg1 = has_mpeg1 || codec == SweepCodec::mpeg1;
