@@ -69,6 +69,8 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 .table-one tr.part th { text-align: left; font: 600 1rem/1.4 var(--serif); padding: 1.1rem .8rem .25rem 0; border-top: 1px solid var(--rule); }
 .table-one tbody:first-of-type tr.part th { border-top: 0; }
 .table-one td.ours { font-weight: 600; }
+.gains thead tr:first-child th { text-transform: none; font: 600 .92rem/1.35 var(--sans); vertical-align: bottom; } .gains thead tr:first-child th.letter { text-align: left; }
+.gains th[scope=row] { padding-left: .8rem; } .gains td { white-space: nowrap; } .gains .unit { font-weight: 400; } .gains td.note { white-space: normal; min-width: 8rem; }
 .table-one td.paper { color: var(--soft); }
 .table-one td.note { color: var(--soft); font-size: .82rem; min-width: 14rem; }
 .table-one tbody tr:not(.part):hover { background: var(--faint); }

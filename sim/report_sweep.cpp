@@ -131,7 +131,7 @@ Text table_head(const char* first) {
 
 Text table_of(const char* first, const Text& label, const Text& rows) {
   return html_tag("div", Text("class=\"scroll\" tabindex=\"0\" role=\"region\" ") + html_attribute("aria-label", label),
-                  html_tag("table", "class=\"table-one\"", table_head(first) + rows)) +
+                  html_tag("table", "class=\"table-one gains\"", table_head(first) + rows)) +
          "\n";
 }
 
@@ -293,12 +293,12 @@ Text contents(const std::vector<SweepPlots>& scenes, bool has_gains) {
 Text gains_section(const SweepGains& gains) {
   return html_section(
       "gains", "", "Bytes at equal score",
-      html_tag(
-          "p", "",
-          "Percent of bytes that the first of each pair takes more (+) or fewer (−) than the second, over all "
-          "scores that both curves reach; geometric mean over the scenes and, below it, its 95 % interval. “Worst” is "
-          "the same of the worst 5 % of the frames. The last column asks at equal bytes: better only where "
-          "SSIMULACRA 2 (by more than 2 points), FLIP and PSNR-HVS-M agree, on mean and worst frames.") +
+      html_tag("p", "",
+               "Percent of bytes that the first of each pair takes more (+) or fewer (−) than the second, over all "
+               "scores that both curves reach; geometric mean over the scenes and, below it, its 95\u00a0% interval. "
+               "“Worst” is "
+               "the same of the worst 5\u00a0% of the frames. The last column asks at equal bytes: better only where "
+               "SSIMULACRA 2 (by more than 2 points), FLIP and PSNR-HVS-M agree, on mean and worst frames.") +
           "\n" + summary_table(gains));
 }
 

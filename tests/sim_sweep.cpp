@@ -289,7 +289,7 @@ TEST_CASE("pac sweep says what is wrong with its input") {
   fails("letter letter -o a", 2, "'letter' is there twice");
   fails("letter -o a --shard 3/2", 2, "is not I/N with 1 <= I <= N");
   fails("letter -o a --shard 0/2", 2, "is not I/N");
-  fails("letter -o a --codecs mpeg", 2, "did you mean 'mpeg1'?");
+  fails("letter -o a --codecs mpeg2", 2, "did you mean 'mpeg1'?");
   fails("letter -o a --codecs jpeg,jpeg", 2, "there twice");
   fails("letter -o a --splits textur", 2, "did you mean 'texture'?");
   fails("letter -o a --qualities 10,0", 2, "0.01..100");
