@@ -35,26 +35,34 @@ void apply_ycck_black(const uint8_t* black, int n, uint8_t* rgb) {
     for (int i = 0; i < 3; ++i) rgb[3 * x + i] = with_black(255 - rgb[3 * x + i], black[x]);
 }
 
-int plane_rows(const Frame& frame, const Component& c, bool whole_image) {
-  return 8 * c.v * (whole_image ? frame.mcu_rows : std::min(2, frame.mcu_rows));
+int plane_rows(const ScaledFrame& scaled, int c, bool whole_image) {
+  // A factor after scaling counts units of 8 / scale samples, as that of the file counts blocks.
+  const Frame& frame = scaled.frame;
+  return 8 / scaled.scale * frame.components[c].v * (whole_image ? frame.mcu_rows : std::min(2, frame.mcu_rows));
+}
+
+ptrdiff_t plane_stride(const ScaledFrame& scaled, int c) {
+  return ptrdiff_t{scaled.block_size[c]} * scaled.frame.components[c].padded_width_blocks;
 }
 
 }  // namespace
 
-uint64_t ComponentPlanes::size_bytes(const Frame& frame, bool whole_image) {
+uint64_t ComponentPlanes::size_bytes(const ScaledFrame& scaled, bool whole_image) {
   uint64_t sum = 0;
-  for (int i = 0; i < frame.n_components; ++i) {
-    const Component& c = frame.components[i];
-    sum += uint64_t{8} * static_cast<uint64_t>(c.padded_width_blocks) *
-           static_cast<uint64_t>(plane_rows(frame, c, whole_image));
-  }
+  for (int c = 0; c < scaled.frame.n_components; ++c)
+    sum += static_cast<uint64_t>(plane_stride(scaled, c)) * static_cast<uint64_t>(plane_rows(scaled, c, whole_image));
   return sum;
+}
+
+uint64_t ComponentPlanes::size_bytes(const Frame& frame, bool whole_image) {
+  return size_bytes(scaled_frame(frame, 1), whole_image);
 }
 
 // As the IJG software chooses: the triangle filter for factors of two where rows are wide enough, else repetition.
 ComponentPlanes::Upsampling ComponentPlanes::choose(const Component& c) const {
   const int h = frame_.h_max, v = frame_.v_max;
   if (c.h == h && c.v == v) return Upsampling::none;
+  if (!fancy_) return Upsampling::nearest;
   if (c.h * 2 == h && c.v == v && c.width > 2) return Upsampling::h2v1;
   if (c.h == h && c.v * 2 == v) return Upsampling::h1v2;
   if (c.h * 2 == h && c.v * 2 == v && c.width > 2) return Upsampling::h2v2;
@@ -62,19 +70,39 @@ ComponentPlanes::Upsampling ComponentPlanes::choose(const Component& c) const {
 }
 
 void ComponentPlanes::reset(const Frame& frame, bool whole_image, ColorModel color, const Kernels& kernels) {
+  reset(scaled_frame(frame, 1), whole_image, color, kernels);
+}
+
+void ComponentPlanes::reset(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels) {
+  const Frame& frame = scaled.frame;
   frame_ = frame;
+  mcu_width_ = scaled.mcu_width();
+  fancy_ = scaled.scale < 8;  // as the IJG software: an eighth is a thumbnail
   color_ = color;
   kernels_ = &kernels;
   for (int i = 0; i < frame.n_components; ++i) {
     const Component& c = frame.components[i];
     Plane& plane = planes_[i];
-    plane.stride = ptrdiff_t{8} * c.padded_width_blocks;
-    plane.n_rows = plane_rows(frame, c, whole_image);
+    plane.block_size = scaled.block_size[i];
+    plane.first = 0;
+    plane.stride = plane_stride(scaled, i);
+    plane.n_rows = plane_rows(scaled, i, whole_image);
     plane.upsampling = choose(c);
     // 128 is what a block of zero coefficients decodes to.
     plane.samples.assign(static_cast<size_t>(plane.stride) * static_cast<size_t>(plane.n_rows), 128);
     upsampled_[i].resize(static_cast<size_t>(frame.mcus_per_row) * 8 * static_cast<size_t>(frame.h_max) + 2);
   }
+}
+
+void ComponentPlanes::narrow(int first, int end) {
+  const auto cut = [&](int width, int mcu_width) { return std::min(width, end * mcu_width) - first * mcu_width; };
+  for (int i = 0; i < frame_.n_components; ++i) {
+    Component& c = frame_.components[i];
+    const int samples = mcu_width_ / frame_.h_max * c.h;  // of an MCU in a row
+    planes_[i].first = ptrdiff_t{first} * samples;
+    c.width = cut(c.width, samples);
+  }
+  frame_.width = cut(frame_.width, mcu_width_);
 }
 
 // Row y of the image at full width, from component c.

@@ -8,6 +8,7 @@
 #include "base/kernels/kernels.h"
 #include "jpeg/frame.h"
 #include "jpeg/jpeg.h"
+#include "jpeg/picture_window.h"
 
 namespace pac::jpeg {
 
@@ -17,15 +18,30 @@ class ComponentPlanes {
  public:
   // Bytes that reset() will take, to be checked against Limits before.
   static uint64_t size_bytes(const Frame& frame, bool whole_image);
+  static uint64_t size_bytes(const ScaledFrame& scaled, bool whole_image);
   // Keeps its buffers from image to image when they suffice.
   void reset(const Frame& frame, bool whole_image, ColorModel color, const Kernels& kernels);
+  void reset(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels);
 
-  // Where the 8 rows of block row `by` of component c start, and how far apart rows are.
-  uint8_t* block_row(int c, int by) { return row(c, 8 * by); }
+  // Only the MCU columns [first, end) count: write_rgb() and gray_row() act as if the picture consisted of those (their
+  // outermost pixels next to other columns differ). After reset().
+  void narrow(int first, int end);
+
+  // Samples a side of component c's blocks: 8, or less in a scaled picture.
+  int block_size(int c) const { return planes_[c].block_size; }
+  // Where the block_size(c) rows of block row `by` of component c start, and how far apart rows are.
+  uint8_t* block_row(int c, int by) {
+    Plane& plane = planes_[c];
+    return plane.samples.data() + plane.block_size * by % plane.n_rows * plane.stride;
+  }
   ptrdiff_t stride(int c) const { return planes_[c].stride; }
 
   // Writes RGB rows [y_begin, y_end) of the image to out (row y at out.row(y)).
   void write_rgb(int y_begin, int y_end, RgbView out);
+  // Row y of the first component, which must be upsampled if others have more samples.
+  const uint8_t* first_row(int y) { return full_row(0, y); }
+  // Row y of component c's samples, not upsampled.
+  const uint8_t* sample_row(int c, int y) { return row(c, y); }
 
  private:
   enum class Upsampling : uint8_t { none, h2v1, h2v2, h1v2, nearest };
@@ -33,15 +49,22 @@ class ComponentPlanes {
     std::vector<uint8_t> samples;
     ptrdiff_t stride = 0;
     int n_rows = 0;  // that `samples` holds; image row y sits in row y % n_rows
+    int block_size = 8;
+    ptrdiff_t first = 0;  // column where the rows begin: see narrow()
     Upsampling upsampling = Upsampling::none;
   };
-  uint8_t* row(int c, int y) { return planes_[c].samples.data() + (y % planes_[c].n_rows) * planes_[c].stride; }
+  uint8_t* row(int c, int y) {
+    Plane& plane = planes_[c];
+    return plane.samples.data() + (y % plane.n_rows) * plane.stride + plane.first;
+  }
   Upsampling choose(const Component& c) const;
   const uint8_t* full_row(int c, int y);
   bool is_plain_420() const;
   void write_420_row(int y, uint8_t* rgb);
 
   Frame frame_;
+  int mcu_width_ = 8;  // pixels
+  bool fancy_ = true;  // triangle filters
   ColorModel color_ = ColorModel::unknown;
   const Kernels* kernels_ = nullptr;
   Plane planes_[kMaxComponents];

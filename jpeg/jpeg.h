@@ -170,18 +170,34 @@ struct Info {
 // as unsupported. Errors: truncated, corrupt, limit_exceeded (with the offset of the segment at fault).
 Result<Info> read_info(std::span<const uint8_t> bytes, const Limits& limits = {});
 
+// A rectangle of a picture: pixels [x, x + width) x [y, y + height), not empty.
+struct Crop {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
 // How to decode. All results but speed are the same for every isa and number of threads.
 struct DecodeOptions {
   Limits limits = {};
   Isa isa = best_isa();
-  int threads =
-      1;  // 0 = all processors, at most 1024; more than one serve where restart markers stand between rows of MCUs
+  int threads = 1;  // 0 = all processors, at most 1024; more than one serve where restart markers stand between rows of
+                    // MCUs and the whole picture is wanted at its own size
+  // 1, 2, 4 or 8: each side divided by it, rounded up, by transforms that make fewer samples. As djpeg -scale 1/N.
+  int scale_denominator = 1;
+  // Of the scaled picture: exactly those pixels of the whole one. Data of a file's only scan that come after the crop
+  // are not read, nor is damage in them seen.
+  std::optional<Crop> crop = {};
 };
 
 // RGB of a complete, sound file (gray is spread to three channels). Errors: truncated, corrupt, unsupported,
 // limit_exceeded; then no picture at all.
 Result<RgbImage> decode(std::span<const uint8_t> bytes, const Limits& limits = {}, Isa isa = best_isa());
-Result<RgbImage> decode(std::span<const uint8_t> bytes, const DecodeOptions& options);
+Result<RgbImage> decode(std::span<const uint8_t> bytes, const DecodeOptions& options);  // bad_argument: scale or crop
+
+// Width and height of the whole picture at a scale.
+struct PictureSize {
+  int width = 0, height = 0;
+};
+PictureSize scaled_size(const Info& info, int scale_denominator);
 
 // What a damaged file still holds.
 struct LenientImage {
@@ -202,8 +218,8 @@ class Decoder {
   ~Decoder();
   Decoder(Decoder&&) noexcept;
   Decoder& operator=(Decoder&&) noexcept;
-  // Writes to `out`, which must have the size that read_info() tells (else bad_argument). On failure the contents of
-  // `out` are unspecified.
+  // Writes to `out`, which must have the crop's size or what scaled_size() tells (else bad_argument). On failure the
+  // contents of `out` are unspecified.
   Result<void> decode_into(std::span<const uint8_t> bytes, RgbView out);
 
  private:

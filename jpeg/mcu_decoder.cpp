@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "jpeg/markers.h"
+#include "jpeg/reduced_idct.h"
 
 namespace pac::jpeg {
 namespace {
@@ -59,6 +60,7 @@ Result<void> McuDecoder::decode_row(int mcu_row, ComponentPlanes& planes) {
       for (ScanComponent& sc : scan_.components) sc.first_block = static_cast<size_t>(j * sc.h);
       PAC_CHECK(read_next_mcu());
     }
+    if (!scan_.needed.has_row(mcu_row) || !scan_.needed.overlaps_columns(mcu, n)) continue;
     for (int i = 0; i < scan_.n_components; ++i) transform_batch(mcu_row, mcu, n, scan_.components[i], planes);
   }
   return {};
@@ -163,9 +165,13 @@ void McuDecoder::transform_batch(int mcu_row, int first_mcu, int n_mcus, const S
                                  ComponentPlanes& planes) {
   for (int by = 0; by < sc.v; ++by) {
     const size_t first = static_cast<size_t>(by) * sc.blocks_per_row;
-    kernels_->block.idct_islow(sc.levels + 64 * first, sc.steps, sc.last + first, static_cast<size_t>(n_mcus * sc.h),
-                               planes.block_row(sc.index, mcu_row * sc.v + by) + 8 * first_mcu * sc.h,
-                               planes.stride(sc.index));
+    const int size = planes.block_size(sc.index);
+    uint8_t* out = planes.block_row(sc.index, mcu_row * sc.v + by) + size * first_mcu * sc.h;
+    const auto n = static_cast<size_t>(n_mcus * sc.h);
+    if (size == 8)
+      kernels_->block.idct_islow(sc.levels + 64 * first, sc.steps, sc.last + first, n, out, planes.stride(sc.index));
+    else
+      idct_reduced(size, sc.levels + 64 * first, sc.steps, n, out, planes.stride(sc.index));
   }
 }
 

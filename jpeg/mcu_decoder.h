@@ -9,6 +9,7 @@
 #include "base/kernels/kernels.h"
 #include "jpeg/component_planes.h"
 #include "jpeg/frame.h"
+#include "jpeg/picture_window.h"
 #include "jpeg/progressive.h"
 #include "jpeg/scan_reader.h"
 
@@ -51,6 +52,7 @@ struct Scan {
   Progression progression;
   uint32_t eob_run = 0;
   int mcus_per_row = 0, mcu_rows = 0;
+  McuWindow needed;          // other MCUs are read, not transformed
   int restart_interval = 0;  // MCUs, 0 = none
   int to_restart = 0;        // MCUs before the next marker
   int next_restart = 0;      // its number

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "jpeg/reduced_idct.h"
 #include "jpeg/tables.h"
 
 namespace pac::jpeg {
@@ -24,9 +25,9 @@ uint64_t level_bytes(const Frame& frame) {
 }  // namespace
 
 // Allocates, after checking against the limits, everything whose size the header decides.
-Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const Limits& limits) {
+Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const DecodeRequest& request) {
   bytes_ = bytes;
-  reader_ = HeaderReader(bytes, limits);
+  reader_ = HeaderReader(bytes, request.limits);
   PAC_CHECK(reader_.start());
   PAC_TRY(first_scan_, reader_.next_scan());
   const Headers& headers = reader_.headers();
@@ -34,17 +35,42 @@ Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const Limits& lim
     return Failure{Error::unsupported, headers.frame_offset, headers.info.unsupported};
   const Frame& frame = headers.frame;
   is_progressive_ = headers.is_progressive();
+  keeps_planes_ = request.keeps_planes;
   single_scan_ = !is_progressive_ && first_scan_.n_components == frame.n_components;
-  const bool whole_planes = !single_scan_ && !is_progressive_;
-  const uint64_t need = ComponentPlanes::size_bytes(frame, whole_planes) + (is_progressive_ ? level_bytes(frame) : 0) +
-                        uint64_t{3} * static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height);
-  if (need > limits.max_bytes)
-    return Failure{Error::limit_exceeded, headers.frame_offset, "decoded image needs more memory than the limit"};
-  // Bands have a ring of two MCU rows each, together at most twice the image.
-  use_bands_ = single_scan_ && pool_ && need + 2 * ComponentPlanes::size_bytes(frame, true) <= limits.max_bytes;
-  planes_.reset(frame, whole_planes, headers.info.color, *kernels_);
+  scaled_ = scaled_frame(frame, request.scale);
+  PAC_CHECK(choose_window(request));
+  PAC_CHECK(check_memory(request));
+  const bool whole_planes = keeps_planes_ || (!single_scan_ && !is_progressive_);
+  planes_.reset(scaled_, whole_planes, headers.info.color, *kernels_);
   for (int c = 0; is_progressive_ && c < frame.n_components; ++c)
     levels_[c].assign(n_padded_blocks(frame.components[c]) * 64, 0);
+  return {};
+}
+
+Result<void> ScanDecoder::choose_window(const DecodeRequest& request) {
+  const int width = scaled_.frame.width, height = scaled_.frame.height;
+  window_ = request.crop ? *request.crop : Crop{0, 0, width, height};
+  const bool inside = window_.x >= 0 && window_.y >= 0 && window_.width > 0 && window_.height > 0 &&
+                      window_.width <= width - window_.x && window_.height <= height - window_.y;
+  if (!inside) return Failure{Error::bad_argument, 0, "the crop does not lie inside the picture"};
+  is_partial_ = window_.width < width || window_.height < height;
+  const Frame& frame = scaled_.frame;
+  needed_ = mcus_of(window_, scaled_.mcu_width(), 8 / scaled_.scale * frame.v_max, frame.mcus_per_row, frame.mcu_rows);
+  return {};
+}
+
+Result<void> ScanDecoder::check_memory(const DecodeRequest& request) {
+  const Frame& frame = reader_.headers().frame;
+  const bool whole_planes = keeps_planes_ || (!single_scan_ && !is_progressive_);
+  const uint64_t pixels = static_cast<uint64_t>(window_.width) * static_cast<uint64_t>(window_.height);
+  const uint64_t need = ComponentPlanes::size_bytes(scaled_, whole_planes) +
+                        (is_progressive_ ? level_bytes(frame) : 0) + (request.makes_image ? 3 * pixels : 0);
+  if (need > request.limits.max_bytes)
+    return Failure{Error::limit_exceeded, reader_.headers().frame_offset,
+                   "decoded image needs more memory than the limit"};
+  // Bands have a ring of two MCU rows each, together at most twice the image.
+  use_bands_ = single_scan_ && pool_ && scaled_.scale == 1 && !is_partial_ &&
+               need + 2 * ComponentPlanes::size_bytes(frame, true) <= request.limits.max_bytes;
   return {};
 }
 
@@ -56,24 +82,33 @@ void ScanDecoder::set_threads(int n_threads) {
     pool_.emplace(n_threads);
 }
 
-Result<void> ScanDecoder::decode(RgbView out, bool lenient) {
+Result<void> ScanDecoder::decode(const RowTarget& target, bool lenient) {
   damage_ = {};
   damage_.lenient = lenient;
   position_ = first_scan_.data_offset;
   std::fill(std::begin(decoded_), std::end(decoded_), false);
-  if (auto done = decode_scans(out); !done.ok()) PAC_CHECK(damage_.tolerate(done.failure()));
+  target_ = target;
+  int first = 0, width = scaled_.frame.width;
+  if (window_.width < width) {
+    planes_.narrow(needed_.first_column, needed_.end_column);
+    first = needed_.first_column * scaled_.mcu_width();
+    width = std::min(width, needed_.end_column * scaled_.mcu_width()) - first;
+  }
+  output_.start(target, window_, first, width, reader_.headers().info.color);
+  if (auto done = decode_scans(); !done.ok()) PAC_CHECK(damage_.tolerate(done.failure()));
   if (is_progressive_)
-    transform_progressive(out);
-  else if (!single_scan_)
-    planes_.write_rgb(0, out.height, out);
+    transform_progressive();
+  else if (!single_scan_ && !keeps_planes_)
+    output_.rows_ready(0, scaled_.frame.height, planes_);
   return {};
 }
 
-Result<void> ScanDecoder::decode_scans(RgbView out) {
+Result<void> ScanDecoder::decode_scans() {
   ScanHeader scan = first_scan_;
   for (int n_scans = 1; scan.n_components > 0; ++n_scans) {
     if (n_scans > kMaxScans) return Failure{Error::limit_exceeded, scan.offset, "more scans than the limit"};
-    PAC_CHECK(decode_scan(scan, out));
+    PAC_CHECK(decode_scan(scan));
+    if (single_scan_ && (is_partial_ || output_.is_stopped())) return {};
     reader_.set_position(position_);
     PAC_TRY(scan, reader_.next_scan());
   }
@@ -139,50 +174,61 @@ Result<void> ScanDecoder::set_up(const ScanHeader& header, Scan& scan) {
   const bool is_interleaved = header.n_components > 1;
   scan.mcus_per_row = is_interleaved ? frame.mcus_per_row : scan.components[0].component->width_blocks;
   scan.mcu_rows = is_interleaved ? frame.mcu_rows : scan.components[0].component->height_blocks;
+  const int h = is_interleaved ? 1 : scan.components[0].component->h;
+  const int v = is_interleaved ? 1 : scan.components[0].component->v;
+  scan.needed = {needed_.first_row * v, needed_.end_row * v, needed_.first_column * h, needed_.end_column * h};
   scan.restart_interval = reader_.headers().info.restart_interval_mcus;
   return {};
 }
 
-Result<void> ScanDecoder::decode_scan(const ScanHeader& header, RgbView out) {
+Result<void> ScanDecoder::decode_scan(const ScanHeader& header) {
   Scan scan;
   PAC_CHECK(set_up(header, scan));
-  const int mcu_height = header.n_components > 1 ? 8 * reader_.headers().frame.v_max : 8;
-  if (use_bands_) {
-    const BandedScan job{bytes_, &scan, header.data_offset, &reader_.headers().frame, reader_.headers().info.color};
-    if (const auto end = bands_.decode(job, *pool_, *kernels_, out)) {
-      position_ = *end;
-      return {};
-    }
-  }
+  if (use_bands_ && target_.rgb.data != nullptr && decode_bands(header, scan)) return {};
+  const int mcu_height = 8 / scaled_.scale * (header.n_components > 1 ? scaled_.frame.v_max : 1);
+  const int end = single_scan_ && is_partial_ ? std::min(scan.needed.end_row, scan.mcu_rows) : scan.mcu_rows;
   mcus_.start(bytes_, scan, header.data_offset, damage_);
-  for (int row = 0; row < scan.mcu_rows; ++row) {
+  for (int row = 0; row < end && !output_.is_stopped(); ++row) {
     PAC_CHECK(mcus_.decode_row(row, planes_));
-    if (single_scan_) write_finished_rows(row, scan.mcu_rows, mcu_height, out);
+    if (single_scan_ && !keeps_planes_) write_finished_rows(row, scan.mcu_rows, mcu_height);
   }
   position_ = mcus_.byte_offset();
   return {};
 }
 
-void ScanDecoder::transform_progressive(RgbView out) {
+bool ScanDecoder::decode_bands(const ScanHeader& header, const Scan& scan) {
+  const BandedScan job{bytes_, &scan, header.data_offset, &reader_.headers().frame, reader_.headers().info.color};
+  const auto end = bands_.decode(job, *pool_, *kernels_, target_.rgb);
+  if (end) position_ = *end;
+  return end.has_value();
+}
+
+void ScanDecoder::transform_progressive() {
   const Frame& frame = reader_.headers().frame;
   const std::vector<uint8_t> last(static_cast<size_t>(frame.mcus_per_row * frame.h_max), 63);
-  for (int row = 0; row < frame.mcu_rows; ++row) {
+  for (int row = needed_.first_row; row < needed_.end_row && !output_.is_stopped(); ++row) {
     for (int c = 0; c < frame.n_components; ++c) {
       const Component& component = frame.components[c];
-      const auto n = static_cast<size_t>(component.padded_width_blocks);
-      for (int by = row * component.v; by < (row + 1) * component.v; ++by)
-        kernels_->block.idct_islow(levels_[c].data() + 64 * n * static_cast<size_t>(by), steps_[c], last.data(), n,
-                                   planes_.block_row(c, by), planes_.stride(c));
+      const int size = planes_.block_size(c), first = needed_.first_column * component.h;
+      const auto n = static_cast<size_t>(needed_.end_column * component.h - first);
+      for (int by = row * component.v; by < (row + 1) * component.v; ++by) {
+        const int16_t* levels = levels_[c].data() + 64 * (ptrdiff_t{component.padded_width_blocks} * by + first);
+        uint8_t* out = planes_.block_row(c, by) + ptrdiff_t{size} * first;
+        if (size == 8)
+          kernels_->block.idct_islow(levels, steps_[c], last.data(), n, out, planes_.stride(c));
+        else
+          idct_reduced(size, levels, steps_[c], n, out, planes_.stride(c));
+      }
     }
-    write_finished_rows(row, frame.mcu_rows, 8 * frame.v_max, out);
+    if (!keeps_planes_) write_finished_rows(row, frame.mcu_rows, 8 / scaled_.scale * frame.v_max);
   }
 }
 
 // The last pixel row of an MCU row waits for the next one: upsampling may look one row of samples ahead.
-void ScanDecoder::write_finished_rows(int mcu_row, int mcu_rows, int mcu_height, RgbView out) {
+void ScanDecoder::write_finished_rows(int mcu_row, int mcu_rows, int mcu_height) {
   const int begin = mcu_row == 0 ? 0 : mcu_row * mcu_height - 1;
-  const int end = mcu_row + 1 == mcu_rows ? out.height : (mcu_row + 1) * mcu_height - 1;
-  planes_.write_rgb(begin, end, out);
+  const int end = mcu_row + 1 == mcu_rows ? scaled_.frame.height : (mcu_row + 1) * mcu_height - 1;
+  output_.rows_ready(begin, end, planes_);
 }
 
 }  // namespace pac::jpeg

@@ -14,8 +14,19 @@
 #include "jpeg/header_reader.h"
 #include "jpeg/jpeg.h"
 #include "jpeg/mcu_decoder.h"
+#include "jpeg/picture_window.h"
+#include "jpeg/row_output.h"
 
 namespace pac::jpeg {
+
+// What is wanted of a file.
+struct DecodeRequest {
+  Limits limits;
+  int scale = 1;              // 1, 2, 4 or 8
+  std::optional<Crop> crop;   // of the scaled picture; empty: all of it
+  bool makes_image = true;    // 3 bytes a pixel of output count against the limits
+  bool keeps_planes = false;  // decode_planes() will be called
+};
 
 // Keeps its buffers from image to image. Call open(), then decode() once.
 class ScanDecoder {
@@ -27,23 +38,33 @@ class ScanDecoder {
 
   // Headers up to the first scan; refuses what is not supported or exceeds the limits; allocates. `bytes` must stay
   // until decode() returns.
-  Result<void> open(std::span<const uint8_t> bytes, const Limits& limits);
-  int width() const { return reader_.headers().frame.width; }
-  int height() const { return reader_.headers().frame.height; }
+  // bad_argument: the crop does not lie inside the scaled picture.
+  Result<void> open(std::span<const uint8_t> bytes, const DecodeRequest& request);
+  // Of the output.
+  int width() const { return window_.width; }
+  int height() const { return window_.height; }
+  const Headers& headers() const { return reader_.headers(); }
 
-  // All scans, into `out` (width() x height()). Lenient: never fails; see first_failure().
-  Result<void> decode(RgbView out, bool lenient);
+  // All scans, to `target` (width() x height()). Lenient: never fails; see first_failure().
+  Result<void> decode(const RowTarget& target, bool lenient);
+  // The same into the samples of each component, which planes() and scaled() then tell.
+  Result<void> decode_planes(bool lenient) { return decode({}, lenient); }
+  ComponentPlanes& planes() { return planes_; }
+  const ScaledFrame& scaled() const { return scaled_; }
   const std::optional<Failure>& first_failure() const { return damage_.first; }
   int warnings() const { return damage_.warnings + reader_.headers().warnings; }
 
  private:
-  Result<void> decode_scans(RgbView out);
+  Result<void> choose_window(const DecodeRequest& request);
+  Result<void> check_memory(const DecodeRequest& request);
+  Result<void> decode_scans();
   Result<void> set_up(const ScanHeader& header, Scan& scan);
   Result<const HuffmanDecoder*> set_up_table(const ScanHeader& header, int table_class, uint8_t id);
   Result<void> set_up_component(const ScanHeader& header, int i, ScanComponent& sc);
-  Result<void> decode_scan(const ScanHeader& header, RgbView out);
-  void transform_progressive(RgbView out);
-  void write_finished_rows(int mcu_row, int mcu_rows, int mcu_height, RgbView out);
+  Result<void> decode_scan(const ScanHeader& header);
+  bool decode_bands(const ScanHeader& header, const Scan& scan);
+  void transform_progressive();
+  void write_finished_rows(int mcu_row, int mcu_rows, int mcu_height);
 
   const Kernels* kernels_;
   std::span<const uint8_t> bytes_;
@@ -51,6 +72,13 @@ class ScanDecoder {
   ScanHeader first_scan_;
   bool is_progressive_ = false;  // all levels are kept until the last scan
   bool single_scan_ = false;     // all components in the first scan: rows go out while the scan is read
+  bool keeps_planes_ = false;
+  bool is_partial_ = false;  // a crop: what nobody needs of the last scan is not read
+  ScaledFrame scaled_;
+  Crop window_;
+  McuWindow needed_;  // in MCUs of an interleaved scan
+  RowTarget target_;
+  RowOutput output_;
   bool decoded_[kMaxComponents] = {};
   uint64_t position_ = 0;  // behind the last scan's data
   Damage damage_;
