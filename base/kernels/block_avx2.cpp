@@ -78,15 +78,19 @@ Wide multiply(const Pairs& ab, int ca, int cb) {
   return {_mm256_madd_epi16(ab.low, factors), _mm256_madd_epi16(ab.high, factors)};
 }
 
-// (x + 2^(s-1)) >> s, saturated to 16 bits.
+// 2^(s-1), which rounds what is then shifted right by s. Added once to a term that several sums share.
 template <int kShift>
-__m256i round_shift(const Wide& x) {
+Wide plus_half(const Wide& x) {
   const __m256i half = _mm256_set1_epi32(1 << (kShift - 1));
-  return _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(x.low, half), kShift),
-                            _mm256_srai_epi32(_mm256_add_epi32(x.high, half), kShift));
+  return {_mm256_add_epi32(x.low, half), _mm256_add_epi32(x.high, half)};
+}
+// x >> s, saturated to 16 bits.
+template <int kShift>
+__m256i shift_right(const Wide& x) {
+  return _mm256_packs_epi32(_mm256_srai_epi32(x.low, kShift), _mm256_srai_epi32(x.high, kShift));
 }
 
-// One dimension, forward. First pass: shift 11, two bits of fraction stay; second: shift 15.
+// One dimension, forward. First pass: samples 0..255, shift 11, two bits of fraction stay; second: shift 15.
 template <bool kIsFirst>
 void fdct_1d(Block& x) {
   constexpr int kShift = kIsFirst ? 11 : 15;
@@ -97,38 +101,58 @@ void fdct_1d(Block& x) {
 
   const __m256i even0 = _mm256_add_epi16(sum07, sum34), even3 = _mm256_sub_epi16(sum07, sum34);
   const __m256i even1 = _mm256_add_epi16(sum16, sum25), even2 = _mm256_sub_epi16(sum16, sum25);
-  const auto scale = [](__m256i v) {
-    // The second pass's sums reach -2^15 .. 2^15 - 2^8: adding 2 cannot overflow.
-    return kIsFirst ? _mm256_slli_epi16(v, 2) : _mm256_srai_epi16(_mm256_add_epi16(v, _mm256_set1_epi16(2)), 2);
-  };
-  x.v[0] = scale(_mm256_add_epi16(even0, even1));
-  x.v[4] = scale(_mm256_sub_epi16(even0, even1));
+  const __m256i dc = _mm256_add_epi16(even0, even1), c4 = _mm256_sub_epi16(even0, even1);
+  if constexpr (kIsFirst) {
+    // The level shift, 128 in each of 8 samples, cancels everywhere but here.
+    x.v[0] = _mm256_slli_epi16(_mm256_sub_epi16(dc, _mm256_set1_epi16(8 * 128)), 2);
+    x.v[4] = _mm256_slli_epi16(c4, 2);
+  } else {
+    // The sums reach -2^15 .. 2^15 - 2^8: adding 2 cannot overflow.
+    x.v[0] = _mm256_srai_epi16(_mm256_add_epi16(dc, _mm256_set1_epi16(2)), 2);
+    x.v[4] = _mm256_srai_epi16(_mm256_add_epi16(c4, _mm256_set1_epi16(2)), 2);
+  }
   const Pairs even23 = interleave(even2, even3);
-  x.v[2] = round_shift<kShift>(multiply(even23, k0_541, k0_541 + k0_765));
-  x.v[6] = round_shift<kShift>(multiply(even23, k0_541 - k1_847, k0_541));
+  x.v[2] = shift_right<kShift>(plus_half<kShift>(multiply(even23, k0_541, k0_541 + k0_765)));
+  x.v[6] = shift_right<kShift>(plus_half<kShift>(multiply(even23, k0_541 - k1_847, k0_541)));
 
   const Pairs z =
       interleave(_mm256_add_epi16(difference34, difference16), _mm256_add_epi16(difference25, difference07));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
+  const Wide odd3 = plus_half<kShift>(multiply(z, k1_175 - k1_961, k1_175));
+  const Wide odd4 = plus_half<kShift>(multiply(z, k1_175, k1_175 - k0_390));
   const Pairs outer = interleave(difference34, difference07), inner = interleave(difference25, difference16);
-  x.v[7] = round_shift<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
-  x.v[1] = round_shift<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
-  x.v[5] = round_shift<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
-  x.v[3] = round_shift<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
+  x.v[7] = shift_right<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
+  x.v[1] = shift_right<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
+  x.v[5] = shift_right<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
+  x.v[3] = shift_right<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
 }
 
 __m128i load_8(const uint8_t* p) {
   return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
 }
 
-Block fdct_pair(const uint8_t* samples, ptrdiff_t stride, bool is_pair) {
-  Block block;
-  for (int row = 0; row < 8; ++row) {
-    const uint8_t* p = samples + row * stride;
-    const __m256i words = is_pair ? _mm256_cvtepu8_epi16(load(p)) : twice(_mm_cvtepu8_epi16(load_8(p)));
-    block.v[row] = _mm256_sub_epi16(words, _mm256_set1_epi16(128));
+// Columns of samples as 16-bit rows: bytes are transposed, which takes half the steps that words would. Of one block:
+// the second half is zero.
+Block load_transposed(const uint8_t* samples, ptrdiff_t stride, bool is_pair) {
+  __m256i rows[4];  // two rows' bytes side by side
+  for (int i = 0; i < 4; ++i) {
+    const uint8_t *const upper = samples + 2 * i * stride, *const lower = upper + stride;
+    const __m128i a = is_pair ? load(upper) : load_8(upper), b = is_pair ? load(lower) : load_8(lower);
+    rows[i] = join(_mm_unpacklo_epi8(a, b), _mm_unpackhi_epi8(a, b));
   }
-  block = transpose(block);
+  const __m256i a0 = _mm256_unpacklo_epi16(rows[0], rows[1]), a1 = _mm256_unpackhi_epi16(rows[0], rows[1]);
+  const __m256i a2 = _mm256_unpacklo_epi16(rows[2], rows[3]), a3 = _mm256_unpackhi_epi16(rows[2], rows[3]);
+  const __m256i columns[4] = {_mm256_unpacklo_epi32(a0, a2), _mm256_unpackhi_epi32(a0, a2),
+                              _mm256_unpacklo_epi32(a1, a3), _mm256_unpackhi_epi32(a1, a3)};  // two in each
+  Block block;
+  for (int i = 0; i < 4; ++i) {
+    block.v[2 * i] = _mm256_unpacklo_epi8(columns[i], _mm256_setzero_si256());
+    block.v[2 * i + 1] = _mm256_unpackhi_epi8(columns[i], _mm256_setzero_si256());
+  }
+  return block;
+}
+
+Block fdct_pair(const uint8_t* samples, ptrdiff_t stride, bool is_pair) {
+  Block block = load_transposed(samples, stride, is_pair);
   fdct_1d<true>(block);
   block = transpose(block);
   fdct_1d<false>(block);
@@ -155,8 +179,8 @@ void idct_1d(Block& x) {
     return Wide{_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, v), 3),
                 _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, v), 3)};
   };
-  const Wide even0 = shift_left_13(_mm256_add_epi16(x.v[0], x.v[4]));
-  const Wide even1 = shift_left_13(_mm256_sub_epi16(x.v[0], x.v[4]));
+  const Wide even0 = plus_half<kShift>(shift_left_13(_mm256_add_epi16(x.v[0], x.v[4])));
+  const Wide even1 = plus_half<kShift>(shift_left_13(_mm256_sub_epi16(x.v[0], x.v[4])));
   const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
 
   const Pairs z = interleave(_mm256_add_epi16(x.v[7], x.v[3]), _mm256_add_epi16(x.v[5], x.v[1]));
@@ -166,10 +190,10 @@ void idct_1d(Block& x) {
   const Wide b1 = multiply(odd53, k2_053 - k2_562, -k2_562) + odd4;
   const Wide b2 = multiply(odd53, -k2_562, k3_072 - k2_562) + odd3;
   const Wide b3 = multiply(odd71, -k0_899, k1_501 - k0_899) + odd4;
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+  x.v[0] = shift_right<kShift>(a0 + b3), x.v[7] = shift_right<kShift>(a0 - b3);
+  x.v[1] = shift_right<kShift>(a1 + b2), x.v[6] = shift_right<kShift>(a1 - b2);
+  x.v[2] = shift_right<kShift>(a2 + b1), x.v[5] = shift_right<kShift>(a2 - b1);
+  x.v[3] = shift_right<kShift>(a3 + b0), x.v[4] = shift_right<kShift>(a3 - b0);
 }
 
 // Only the DC level: every sample is the same. Returns it eight times.
@@ -190,36 +214,76 @@ void store_row(uint8_t* p, __m128i samples, bool is_pair) {
     _mm_storel_epi64(reinterpret_cast<__m128i*>(p), samples);
 }
 
-// One dimension where inputs 4..7 are zero: half of the flow graph, its
-// rotations joined into one multiplication each.
-template <int kShift>
-void idct_1d_low(Block& x) {
-  const __m256i zero = _mm256_setzero_si256();
-  const Pairs even20 = interleave(x.v[2], zero);
-  const Wide even2 = multiply(even20, k0_541 + k0_765, 0), even3 = multiply(even20, k0_541, 0);
-  const Wide even0 = {_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, x.v[0]), 3),
-                      _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, x.v[0]), 3)};
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even0 + even3, a2 = even0 - even3;
-  const Pairs odd31 = interleave(x.v[3], x.v[1]);
-  const Wide b0 = multiply(odd31, k1_175 - k1_961, k1_175 - k0_899);
-  const Wide b1 = multiply(odd31, k1_175 - k2_562, k1_175 - k0_390);
-  const Wide b2 = multiply(odd31, k3_072 - k2_562 + k1_175 - k1_961, k1_175);
-  const Wide b3 = multiply(odd31, k1_175, k1_501 - k0_899 + k1_175 - k0_390);
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
+// The sums of one dimension before the shift where inputs 4..7 are zero: half of the flow graph, its rotations joined
+// into one multiplication each. Of the low or the high four lanes, as `unpack` takes them.
+template <int kShift, class Unpack>
+void idct_sums_low(const Block& x, Unpack&& unpack, __m256i (&sums)[8]) {
+  const auto multiply_pair = [](__m256i ab, int ca, int cb) {
+    return _mm256_madd_epi16(ab, _mm256_set1_epi32(static_cast<int>(static_cast<uint32_t>(cb) << 16 |
+                                                                    (static_cast<uint32_t>(ca) & 0xFFFF))));
+  };
+  const __m256i zero = _mm256_setzero_si256(), half = _mm256_set1_epi32(1 << (kShift - 1));
+  const __m256i even20 = unpack(x.v[2], zero), odd31 = unpack(x.v[3], x.v[1]);
+  const __m256i even0 = _mm256_add_epi32(_mm256_srai_epi32(unpack(zero, x.v[0]), 3), half);
+  const __m256i even2 = multiply_pair(even20, k0_541 + k0_765, 0), even3 = multiply_pair(even20, k0_541, 0);
+  const __m256i a[4] = {_mm256_add_epi32(even0, even2), _mm256_add_epi32(even0, even3), _mm256_sub_epi32(even0, even3),
+                        _mm256_sub_epi32(even0, even2)};
+  const __m256i b[4] = {multiply_pair(odd31, k1_175, k1_501 - k0_899 + k1_175 - k0_390),
+                        multiply_pair(odd31, k3_072 - k2_562 + k1_175 - k1_961, k1_175),
+                        multiply_pair(odd31, k1_175 - k2_562, k1_175 - k0_390),
+                        multiply_pair(odd31, k1_175 - k1_961, k1_175 - k0_899)};
+  for (int i = 0; i < 4; ++i) {
+    sums[i] = _mm256_add_epi32(a[i], b[i]);
+    sums[7 - i] = _mm256_sub_epi32(a[i], b[i]);
+  }
+}
+__m256i unpack_low(__m256i a, __m256i b) {
+  return _mm256_unpacklo_epi16(a, b);
+}
+__m256i unpack_high(__m256i a, __m256i b) {
+  return _mm256_unpackhi_epi16(a, b);
 }
 
-// Columns 0..3 of eight rows to rows 0..3; the others are not set.
-Block transpose_left(const Block& b) {
-  const __m256i a0 = _mm256_unpacklo_epi16(b.v[0], b.v[1]), a2 = _mm256_unpacklo_epi16(b.v[2], b.v[3]);
-  const __m256i a4 = _mm256_unpacklo_epi16(b.v[4], b.v[5]), a6 = _mm256_unpacklo_epi16(b.v[6], b.v[7]);
-  const __m256i c0 = _mm256_unpacklo_epi32(a0, a2), c1 = _mm256_unpackhi_epi32(a0, a2);
-  const __m256i c4 = _mm256_unpacklo_epi32(a4, a6), c5 = _mm256_unpackhi_epi32(a4, a6);
-  const __m256i zero = _mm256_setzero_si256();
-  return {{_mm256_unpacklo_epi64(c0, c4), _mm256_unpackhi_epi64(c0, c4), _mm256_unpacklo_epi64(c1, c5),
-           _mm256_unpackhi_epi64(c1, c5), zero, zero, zero, zero}};
+// First dimension: columns 0..3 of the result, transposed. The other columns are zero and so is what comes of them.
+void idct_columns_low(Block& x) {
+  __m256i sums[8];
+  idct_sums_low<11>(x, unpack_low, sums);
+  for (__m256i& row : sums) row = _mm256_srai_epi32(row, 11);
+  const __m256i rows02 = _mm256_packs_epi32(sums[0], sums[2]), rows13 = _mm256_packs_epi32(sums[1], sums[3]);
+  const __m256i rows46 = _mm256_packs_epi32(sums[4], sums[6]), rows57 = _mm256_packs_epi32(sums[5], sums[7]);
+  const __m256i a0 = _mm256_unpacklo_epi16(rows02, rows13), a2 = _mm256_unpackhi_epi16(rows02, rows13);
+  const __m256i a4 = _mm256_unpacklo_epi16(rows46, rows57), a6 = _mm256_unpackhi_epi16(rows46, rows57);
+  const __m256i c0 = _mm256_unpacklo_epi32(a0, a2),
+                c2 = _mm256_unpackhi_epi32(a0, a2);  // columns 0 1, 2 3 of rows 0..3
+  const __m256i c4 = _mm256_unpacklo_epi32(a4, a6), c6 = _mm256_unpackhi_epi32(a4, a6);  // the same of rows 4..7
+  x.v[0] = _mm256_unpacklo_epi64(c0, c4), x.v[1] = _mm256_unpackhi_epi64(c0, c4);
+  x.v[2] = _mm256_unpacklo_epi64(c2, c6), x.v[3] = _mm256_unpackhi_epi64(c2, c6);
+}
+
+void idct_rows_low(Block& x) {
+  __m256i low[8], high[8];
+  idct_sums_low<18>(x, unpack_low, low);
+  idct_sums_low<18>(x, unpack_high, high);
+  for (int i = 0; i < 8; ++i) x.v[i] = shift_right<18>({low[i], high[i]});
+}
+
+// Columns of sample values less 128 in 16 bits to rows of samples, two blocks side by side.
+void store_transposed(const Block& x, bool is_pair, uint8_t* samples, ptrdiff_t stride) {
+  const __m256i p04 = _mm256_packs_epi16(x.v[0], x.v[4]), p15 = _mm256_packs_epi16(x.v[1], x.v[5]);
+  const __m256i p26 = _mm256_packs_epi16(x.v[2], x.v[6]), p37 = _mm256_packs_epi16(x.v[3], x.v[7]);
+  const __m256i a02 = _mm256_unpacklo_epi8(p04, p26), a46 = _mm256_unpackhi_epi8(p04, p26);
+  const __m256i a13 = _mm256_unpacklo_epi8(p15, p37), a57 = _mm256_unpackhi_epi8(p15, p37);
+  const __m256i low0 = _mm256_unpacklo_epi8(a02, a13), low4 = _mm256_unpackhi_epi8(a02, a13);    // columns 0..3
+  const __m256i high0 = _mm256_unpacklo_epi8(a46, a57), high4 = _mm256_unpackhi_epi8(a46, a57);  // columns 4..7
+  const __m256i rows[4] = {_mm256_unpacklo_epi32(low0, high0), _mm256_unpackhi_epi32(low0, high0),
+                           _mm256_unpacklo_epi32(low4, high4), _mm256_unpackhi_epi32(low4, high4)};
+  const __m256i center = _mm256_set1_epi8(static_cast<char>(0x80));  // adds 128 to a signed byte
+  for (int i = 0; i < 4; ++i) {
+    // (row of first, next row of first | row of second, next row of second) -> rows of both side by side
+    const __m256i both = _mm256_permute4x64_epi64(_mm256_xor_si256(rows[i], center), 0xD8);
+    store_row(samples + 2 * i * stride, first_of(both), is_pair);
+    store_row(samples + (2 * i + 1) * stride, second_of(both), is_pair);
+  }
 }
 
 // kIsLow: only the levels of the first four rows and columns are not zero.
@@ -232,23 +296,14 @@ void idct_pair(const int16_t* levels, const uint16_t* steps, bool is_pair, uint8
     block.v[row] = _mm256_mullo_epi16(both, twice(load(steps + 8 * row)));
   }
   if constexpr (kIsLow) {
-    idct_1d_low<11>(block);
-    block = transpose_left(block);
-    idct_1d_low<18>(block);
+    idct_columns_low(block);
+    idct_rows_low(block);
   } else {
     idct_1d<11>(block);
     block = transpose(block);
     idct_1d<18>(block);
   }
-  block = transpose(block);
-  const __m256i center = _mm256_set1_epi8(static_cast<char>(0x80));  // adds 128 to a signed byte
-  for (int row = 0; row < 8; row += 2) {
-    // (row of first, next row of first | row of second, next row of second) -> rows of both side by side
-    const __m256i bytes = _mm256_xor_si256(_mm256_packs_epi16(block.v[row], block.v[row + 1]), center);
-    const __m256i rows = _mm256_permute4x64_epi64(bytes, 0xD8);
-    store_row(samples + row * stride, first_of(rows), is_pair);
-    store_row(samples + (row + 1) * stride, second_of(rows), is_pair);
-  }
+  store_transposed(block, is_pair, samples, stride);
 }
 
 void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* last, size_t n_blocks, uint8_t* samples,
@@ -271,14 +326,14 @@ void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* las
 
 // pshufb masks that bring to each vector of eight zigzag positions what it takes from each natural row; -1 gives zero.
 struct ZigzagMasks {
-  alignas(16) int8_t mask[8][8][16];  // [output vector][natural row]
+  alignas(32) int8_t mask[8][8][32];  // [output vector][natural row], the same in both halves
 };
 constexpr ZigzagMasks make_zigzag_masks() {
   ZigzagMasks masks{};
   for (int out = 0; out < 8; ++out)
     for (int row = 0; row < 8; ++row)
-      for (int lane = 0; lane < 8; ++lane) {
-        const int natural = kNaturalFromZigzag[8 * out + lane];
+      for (int lane = 0; lane < 16; ++lane) {
+        const int natural = kNaturalFromZigzag[8 * out + lane % 8];
         const bool is_here = natural / 8 == row;
         masks.mask[out][row][2 * lane] = static_cast<int8_t>(is_here ? natural % 8 * 2 : -1);
         masks.mask[out][row][2 * lane + 1] = static_cast<int8_t>(is_here ? natural % 8 * 2 + 1 : -1);
@@ -287,11 +342,15 @@ constexpr ZigzagMasks make_zigzag_masks() {
 }
 constexpr ZigzagMasks kZigzag = make_zigzag_masks();
 
+__m256i load_aligned(const void* p) {
+  return _mm256_load_si256(static_cast<const __m256i*>(p));
+}
+
 // Zigzag positions 8 kOut .. 8 kOut + 7, which lie in these natural rows only.
 template <int kOut, int... kRows>
 __m256i gather(const Block& natural) {
   __m256i result = _mm256_setzero_si256();
-  ((result = _mm256_or_si256(result, _mm256_shuffle_epi8(natural.v[kRows], twice(load(kZigzag.mask[kOut][kRows]))))),
+  ((result = _mm256_or_si256(result, _mm256_shuffle_epi8(natural.v[kRows], load_aligned(kZigzag.mask[kOut][kRows])))),
    ...);
   return result;
 }
@@ -301,13 +360,24 @@ Block zigzag_from_natural(const Block& b) {
            gather<7, 5, 6, 7>(b)}};
 }
 
+// A BlockQuantizer for both halves.
+struct PairQuantizer {
+  explicit PairQuantizer(const BlockQuantizer& quantizer) {
+    for (int row = 0; row < 8; ++row) {
+      bias[row] = twice(load(quantizer.bias + 8 * row));
+      reciprocal[row] = twice(load(quantizer.reciprocal + 8 * row));
+      scale[row] = twice(load(quantizer.scale + 8 * row));
+    }
+  }
+  __m256i bias[8], reciprocal[8], scale[8];
+};
+
 // Levels of two blocks in natural order.
-Block quantized(const Block& c, const BlockQuantizer& quantizer) {
+Block quantized(const Block& c, const PairQuantizer& quantizer) {
   Block block;
   for (int row = 0; row < 8; ++row) {
-    const __m256i n = _mm256_add_epi16(_mm256_abs_epi16(c.v[row]), twice(load(quantizer.bias + 8 * row)));
-    const __m256i level = _mm256_mulhi_epu16(_mm256_mulhi_epu16(n, twice(load(quantizer.reciprocal + 8 * row))),
-                                             twice(load(quantizer.scale + 8 * row)));
+    const __m256i n = _mm256_add_epi16(_mm256_abs_epi16(c.v[row]), quantizer.bias[row]);
+    const __m256i level = _mm256_mulhi_epu16(_mm256_mulhi_epu16(n, quantizer.reciprocal[row]), quantizer.scale[row]);
     block.v[row] = _mm256_sign_epi16(level, c.v[row]);  // c == 0 gives 0, as its level does
   }
   return block;
@@ -332,6 +402,7 @@ void store_levels(const Block& natural, bool is_pair, int16_t* levels, uint64_t*
 
 void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size_t n_blocks, int16_t* levels,
               uint64_t* nonzero) {
+  const PairQuantizer both(quantizer);
   for (size_t i = 0; i < n_blocks; i += 2) {
     const int16_t* in = coefficients + 64 * i;
     const bool is_pair = i + 1 < n_blocks;
@@ -340,16 +411,16 @@ void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size
       const __m128i first = load(in + 8 * row);
       block.v[row] = is_pair ? join(first, load(in + 64 + 8 * row)) : twice(first);
     }
-    store_levels(quantized(block, quantizer), is_pair, levels + 64 * i, nonzero + i);
+    store_levels(quantized(block, both), is_pair, levels + 64 * i, nonzero + i);
   }
 }
 
 void fdct_quantize(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, const BlockQuantizer& quantizer,
                    int16_t* levels, uint64_t* nonzero) {
+  const PairQuantizer both(quantizer);
   for (size_t i = 0; i < n_blocks; i += 2) {
     const bool is_pair = i + 1 < n_blocks;
-    store_levels(quantized(fdct_pair(samples + 8 * i, stride, is_pair), quantizer), is_pair, levels + 64 * i,
-                 nonzero + i);
+    store_levels(quantized(fdct_pair(samples + 8 * i, stride, is_pair), both), is_pair, levels + 64 * i, nonzero + i);
   }
 }
 

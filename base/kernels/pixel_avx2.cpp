@@ -133,54 +133,63 @@ void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uin
 struct Rgb {
   __m256i r, g, b;  // 16-bit lanes, to be added to y
 };
-// (c v + 32768) >> 16 == (mulhi(2v, c) + 1) >> 1 for a 16-bit c: nested floors. What exceeds 16 bits is taken out as
-// whole multiples: 91881 = 65536 + 26345, 116130 = 131072 - 14942, -46802 = -65536 + 18734.
+// pmulhrsw gives (x c + 2^14) >> 15, so c is half the fraction of 2^16. Blue's is even: 116130 = 131072 - 2 * 7471.
+// Red's is odd, 91881 = 65536 + 26345, but 13175 rounds as 26345 / 2 does for all v in -128..127. Green's two are even.
 Rgb offsets_from_chroma(__m256i u, __m256i v) {
-  const __m256i one = _mm256_set1_epi16(1), half = _mm256_set1_epi32(1 << 15);
-  const __m256i two_u = _mm256_add_epi16(u, u), two_v = _mm256_add_epi16(v, v);
-  const __m256i red = _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(two_v, _mm256_set1_epi16(26345)), one), 1);
-  const __m256i blue =
-      _mm256_srai_epi16(_mm256_add_epi16(_mm256_mulhi_epi16(two_u, _mm256_set1_epi16(-14942)), one), 1);
-  const __m256i low = _mm256_madd_epi16(_mm256_unpacklo_epi16(u, v), pair(-22554, 18734));
-  const __m256i high = _mm256_madd_epi16(_mm256_unpackhi_epi16(u, v), pair(-22554, 18734));
-  const __m256i green = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(low, half), 16),
-                                           _mm256_srai_epi32(_mm256_add_epi32(high, half), 16));
-  return {_mm256_add_epi16(v, red), _mm256_sub_epi16(green, v), _mm256_add_epi16(two_u, blue)};
+  const __m256i half = _mm256_set1_epi32(1 << 14);
+  const __m256i red = _mm256_add_epi16(v, _mm256_mulhrs_epi16(v, _mm256_set1_epi16(13175)));
+  const __m256i blue = _mm256_add_epi16(_mm256_add_epi16(u, u), _mm256_mulhrs_epi16(u, _mm256_set1_epi16(-7471)));
+  const __m256i low = _mm256_madd_epi16(_mm256_unpacklo_epi16(u, v), pair(-11277, -23401));
+  const __m256i high = _mm256_madd_epi16(_mm256_unpackhi_epi16(u, v), pair(-11277, -23401));
+  const __m256i green = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(low, half), 15),
+                                           _mm256_srai_epi32(_mm256_add_epi32(high, half), 15));
+  return {red, green, blue};
 }
 
-// In each half: byte j of output vector k is channel (16k + j) % 3 of pixel (16k + j) / 3.
+// Of 48 interleaved bytes, in vectors k = 0, 1, 2, byte t of vector k belongs to channel (k + t) % 3: each byte
+// position of a channel serves one vector only. So one shuffle brings a channel's samples to their places in all three,
+// and blends pick what each vector wants.
 struct InterleaveMasks {
-  alignas(16) int8_t mask[3][3][16];  // [vector][channel]
+  alignas(16) int8_t place[3][16];  // [channel]
+  alignas(16) int8_t second[16];    // positions that come from the next channel
+  alignas(16) int8_t third[16];     // and from the one after it
 };
 // even_first: the pixels come as the eight even ones, then the odd ones.
 constexpr InterleaveMasks make_interleave_masks(bool even_first) {
   InterleaveMasks masks{};
-  for (int k = 0; k < 3; ++k)
-    for (int channel = 0; channel < 3; ++channel)
-      for (int j = 0; j < 16; ++j) {
-        const int pixel = (16 * k + j) / 3, at = even_first ? pixel / 2 + pixel % 2 * 8 : pixel;
-        masks.mask[k][channel][j] = static_cast<int8_t>((16 * k + j) % 3 == channel ? at : -1);
-      }
+  for (int t = 0; t < 16; ++t) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const int k = (channel + 18 - t) % 3, pixel = (16 * k + t) / 3;
+      masks.place[channel][t] = static_cast<int8_t>(even_first ? pixel / 2 + pixel % 2 * 8 : pixel);
+    }
+    masks.second[t] = static_cast<int8_t>(t % 3 == 1 ? -1 : 0);
+    masks.third[t] = static_cast<int8_t>(t % 3 == 2 ? -1 : 0);
+  }
   return masks;
 }
 constexpr InterleaveMasks kInterleave = make_interleave_masks(false);
 constexpr InterleaveMasks kInterleaveEvenFirst = make_interleave_masks(true);
 
-__m256i interleave(const int8_t (&masks)[3][16], __m256i r, __m256i g, __m256i b) {
-  const auto pick = [](__m256i from, const int8_t* mask) {
-    return _mm256_shuffle_epi8(from, twice(_mm_load_si128(reinterpret_cast<const __m128i*>(mask))));
-  };
-  return _mm256_or_si256(_mm256_or_si256(pick(r, masks[0]), pick(g, masks[1])), pick(b, masks[2]));
+__m256i mask_of(const int8_t (&bytes)[16]) {
+  return twice(_mm_load_si128(reinterpret_cast<const __m128i*>(bytes)));
+}
+void store_halves(uint8_t* low, uint8_t* high, __m256i v) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(low), _mm256_castsi256_si128(v));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(high), _mm256_extracti128_si256(v, 1));
 }
 
-// 32 pixels, 16 in each half.
-void store_rgb(const InterleaveMasks& masks, __m256i r, __m256i g, __m256i b, uint8_t* rgb) {
-  // Low halves: bytes 0..47 in order; high halves: bytes 48..95.
-  const __m256i v0 = interleave(masks.mask[0], r, g, b), v1 = interleave(masks.mask[1], r, g, b),
-                v2 = interleave(masks.mask[2], r, g, b);
-  store(rgb, _mm256_permute2x128_si256(v0, v1, 0x20));
-  store(rgb + 32, _mm256_permute2x128_si256(v2, v0, 0x30));
-  store(rgb + 64, _mm256_permute2x128_si256(v1, v2, 0x31));
+// 16 pixels of the low halves to low_rgb, 16 of the high halves to high_rgb.
+void store_rgb(const InterleaveMasks& masks, __m256i r, __m256i g, __m256i b, uint8_t* low_rgb, uint8_t* high_rgb) {
+  const __m256i red = _mm256_shuffle_epi8(r, mask_of(masks.place[0]));
+  const __m256i green = _mm256_shuffle_epi8(g, mask_of(masks.place[1]));
+  const __m256i blue = _mm256_shuffle_epi8(b, mask_of(masks.place[2]));
+  const __m256i second = mask_of(masks.second), third = mask_of(masks.third);
+  const auto blend = [&](__m256i x, __m256i y, __m256i z) {
+    return _mm256_blendv_epi8(_mm256_blendv_epi8(x, y, second), z, third);
+  };
+  store_halves(low_rgb, high_rgb, blend(red, green, blue));
+  store_halves(low_rgb + 16, high_rgb + 16, blend(green, blue, red));
+  store_halves(low_rgb + 32, high_rgb + 32, blend(blue, red, green));
 }
 
 void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, uint8_t* rgb) {
@@ -195,7 +204,7 @@ void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, u
     return _mm256_packus_epi16(_mm256_add_epi16(luma_low, a), _mm256_add_epi16(luma_high, b));
   };
   const __m256i r = channel(low.r, high.r), g = channel(low.g, high.g), b = channel(low.b, high.b);
-  store_rgb(kInterleave, r, g, b, rgb);
+  store_rgb(kInterleave, r, g, b, rgb, rgb + 48);
 }
 
 void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
@@ -286,7 +295,10 @@ struct Surrounded {
   uint8_t bytes[kStep + 2] = {};
   Surrounded(const uint8_t* row, size_t n, size_t at, size_t count) {
     bytes[0] = row[at == 0 ? 0 : at - 1];
-    copy(bytes + 1, row + at, count);
+    if (count == kStep)
+      store(bytes + 1, load(row + at));
+    else
+      copy(bytes + 1, row + at, count);
     bytes[count + 1] = row[at + count == n ? n - 1 : at + count];
   }
 };
@@ -332,59 +344,81 @@ void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_
   }
 }
 
-// Sixteen samples' upsampled neighbors less 128, the even and the odd ones, in
-// 16-bit lanes. Reads [-1] .. [16].
+// Upsampled samples less 128 in 16-bit lanes: those at twice the place of the sample, and those behind them.
 struct EvenOdd {
   __m256i even, odd;
 };
-EvenOdd centered_h2v2(const uint8_t* near, const uint8_t* far) {
-  const auto column = [near, far](ptrdiff_t at) {
-    const __m256i nearer = _mm256_cvtepu8_epi16(load_16(near + at)), farther = _mm256_cvtepu8_epi16(load_16(far + at));
-    return _mm256_add_epi16(_mm256_add_epi16(nearer, nearer), _mm256_add_epi16(nearer, farther));
+// Of 32 samples; `low` is of the low eight in each half.
+struct Upsampled {
+  EvenOdd low, high;
+};
+// Reads [-1] .. [32].
+Upsampled centered_h2v2(const uint8_t* near, const uint8_t* far) {
+  const Weighted left = three_to_one(load(near - 1), load(far - 1)),
+                 right = three_to_one(load(near + 1), load(far + 1));
+  const auto sixteenth = [](__m256i pairs, __m256i before, __m256i behind) {
+    // 3 (3 near + far), rounded for the even outputs: (sum + 8) >> 4 less 128 is (sum + 8 - 2048) >> 4.
+    const __m256i here =
+        _mm256_add_epi16(_mm256_maddubs_epi16(pairs, _mm256_set1_epi16(0x0309)), _mm256_set1_epi16(8 - 2048));
+    const __m256i odd = _mm256_add_epi16(_mm256_add_epi16(here, behind), _mm256_set1_epi16(-1));
+    return EvenOdd{_mm256_srai_epi16(_mm256_add_epi16(here, before), 4), _mm256_srai_epi16(odd, 4)};
   };
-  const __m256i here = column(0), three = _mm256_add_epi16(_mm256_add_epi16(here, here), here);
-  // (sum + 8) >> 4 less 128 is (sum + 8 - 2048) >> 4.
-  const auto sixteenth = [&](__m256i other, int bias) {
-    return _mm256_srai_epi16(
-        _mm256_add_epi16(_mm256_add_epi16(three, other), _mm256_set1_epi16(static_cast<int16_t>(bias - 2048))), 4);
-  };
-  return {sixteenth(column(-1), 8), sixteenth(column(1), 7)};
+  const __m256i nearer = load(near), farther = load(far);
+  return {sixteenth(_mm256_unpacklo_epi8(nearer, farther), left.low, right.low),
+          sixteenth(_mm256_unpackhi_epi8(nearer, farther), left.high, right.high)};
 }
 
-// Reads chroma [-1] .. [16].
-void rgb_from_ycc420_step(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
-                          const uint8_t* cr_far, uint8_t* rgb) {
-  const EvenOdd u = centered_h2v2(cb_near, cb_far), v = centered_h2v2(cr_near, cr_far);
+// Pixels of eight samples of each half.
+void rgb_from_upsampled(__m256i luma, const EvenOdd& u, const EvenOdd& v, uint8_t* low_rgb, uint8_t* high_rgb) {
   const Rgb even = offsets_from_chroma(u.even, v.even), odd = offsets_from_chroma(u.odd, v.odd);
-  const __m256i luma = load(y);
   const __m256i luma_even = _mm256_and_si256(luma, _mm256_set1_epi16(255)), luma_odd = _mm256_srli_epi16(luma, 8);
   const auto channel = [&](__m256i a, __m256i b) {
     return _mm256_packus_epi16(_mm256_add_epi16(luma_even, a), _mm256_add_epi16(luma_odd, b));
   };
-  store_rgb(kInterleaveEvenFirst, channel(even.r, odd.r), channel(even.g, odd.g), channel(even.b, odd.b), rgb);
+  store_rgb(kInterleaveEvenFirst, channel(even.r, odd.r), channel(even.g, odd.g), channel(even.b, odd.b), low_rgb,
+            high_rgb);
+}
+
+// 64 pixels. Reads chroma [-1] .. [32].
+void rgb_from_ycc420_step(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
+                          const uint8_t* cr_far, uint8_t* rgb) {
+  const Upsampled u = centered_h2v2(cb_near, cb_far), v = centered_h2v2(cr_near, cr_far);
+  rgb_from_upsampled(load_halves(y, y + 32), u.low, v.low, rgb, rgb + 96);
+  rgb_from_upsampled(load_halves(y + 16, y + 48), u.high, v.high, rgb + 48, rgb + 144);
+}
+
+// The step at sample i of a row where it lacks neighbors, or samples: with surrounded copies.
+void rgb_from_ycc420_edge(const uint8_t* y, const uint8_t* const (&chroma)[4], size_t n, size_t i, uint8_t* rgb) {
+  const size_t n_chroma = (n + 1) / 2, count = n_chroma - i < kStep ? n_chroma - i : kStep;
+  const Surrounded edges[4] = {{chroma[0], n_chroma, i, count},
+                               {chroma[1], n_chroma, i, count},
+                               {chroma[2], n_chroma, i, count},
+                               {chroma[3], n_chroma, i, count}};
+  const auto step = [&edges](const uint8_t* luma, uint8_t* out) {
+    rgb_from_ycc420_step(luma, edges[0].bytes + 1, edges[1].bytes + 1, edges[2].bytes + 1, edges[3].bytes + 1, out);
+  };
+  const size_t n_pixels = n - 2 * i < 2 * kStep ? n - 2 * i : 2 * kStep;
+  if (n_pixels == 2 * kStep) {
+    step(y + 2 * i, rgb + 6 * i);
+    return;
+  }
+  uint8_t luma[2 * kStep] = {}, out[6 * kStep];
+  copy(luma, y + 2 * i, n_pixels);
+  step(luma, out);
+  copy(rgb + 6 * i, out, 3 * n_pixels);
 }
 
 void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
                          const uint8_t* cr_far, size_t n, uint8_t* rgb) {
-  constexpr size_t kChroma = kStep / 2;
+  const uint8_t* const chroma[4] = {cb_near, cb_far, cr_near, cr_far};
   const size_t n_chroma = (n + 1) / 2;
-  for (size_t i = 0; i < n_chroma; i += kChroma) {
-    if (i > 0 && i + kChroma < n_chroma) {
-      rgb_from_ycc420_step(y + 2 * i, cb_near + i, cb_far + i, cr_near + i, cr_far + i, rgb + 6 * i);
-      continue;
-    }
-    const size_t count = n_chroma - i < kChroma ? n_chroma - i : kChroma;
-    const size_t n_pixels = n - 2 * i < kStep ? n - 2 * i : kStep;
-    const Surrounded edges[4] = {{cb_near, n_chroma, i, count},
-                                 {cb_far, n_chroma, i, count},
-                                 {cr_near, n_chroma, i, count},
-                                 {cr_far, n_chroma, i, count}};
-    uint8_t luma[kStep] = {}, edge_rgb[3 * kStep];
-    copy(luma, y + 2 * i, n_pixels);
-    rgb_from_ycc420_step(luma, edges[0].bytes + 1, edges[1].bytes + 1, edges[2].bytes + 1, edges[3].bytes + 1,
-                         edge_rgb);
-    copy(rgb + 6 * i, edge_rgb, 3 * n_pixels);
-  }
+  rgb_from_ycc420_edge(y, chroma, n, 0, rgb);
+  size_t i = kStep;
+  for (; i + kStep < n_chroma; i += kStep)
+    rgb_from_ycc420_step(y + 2 * i, cb_near + i, cb_far + i, cr_near + i, cr_far + i, rgb + 6 * i);
+  if (i >= n_chroma) return;
+  // The last step may begin earlier and do pixels twice, which is cheaper than to do less than a step.
+  rgb_from_ycc420_edge(y, chroma, n, n % 2 == 0 ? n_chroma - kStep : i, rgb);
 }
 
 void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {

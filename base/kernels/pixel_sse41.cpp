@@ -117,18 +117,17 @@ void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uin
 struct Rgb {
   __m128i r, g, b;  // 16-bit lanes, to be added to y
 };
-// (c v + 32768) >> 16 == (mulhi(2v, c) + 1) >> 1 for a 16-bit c: nested floors. What exceeds 16 bits is taken out as
-// whole multiples: 91881 = 65536 + 26345, 116130 = 131072 - 14942, -46802 = -65536 + 18734.
+// pmulhrsw gives (x c + 2^14) >> 15, so c is half the fraction of 2^16. Blue's is even: 116130 = 131072 - 2 * 7471.
+// Red's is odd, 91881 = 65536 + 26345, but 13175 rounds as 26345 / 2 does for all v in -128..127. Green's two are even.
 Rgb offsets_from_chroma(__m128i u, __m128i v) {
-  const __m128i one = _mm_set1_epi16(1), half = _mm_set1_epi32(1 << 15);
-  const __m128i two_u = _mm_add_epi16(u, u), two_v = _mm_add_epi16(v, v);
-  const __m128i red = _mm_srai_epi16(_mm_add_epi16(_mm_mulhi_epi16(two_v, _mm_set1_epi16(26345)), one), 1);
-  const __m128i blue = _mm_srai_epi16(_mm_add_epi16(_mm_mulhi_epi16(two_u, _mm_set1_epi16(-14942)), one), 1);
-  const __m128i low = _mm_madd_epi16(_mm_unpacklo_epi16(u, v), pair(-22554, 18734));
-  const __m128i high = _mm_madd_epi16(_mm_unpackhi_epi16(u, v), pair(-22554, 18734));
+  const __m128i half = _mm_set1_epi32(1 << 14);
+  const __m128i red = _mm_add_epi16(v, _mm_mulhrs_epi16(v, _mm_set1_epi16(13175)));
+  const __m128i blue = _mm_add_epi16(_mm_add_epi16(u, u), _mm_mulhrs_epi16(u, _mm_set1_epi16(-7471)));
+  const __m128i low = _mm_madd_epi16(_mm_unpacklo_epi16(u, v), pair(-11277, -23401));
+  const __m128i high = _mm_madd_epi16(_mm_unpackhi_epi16(u, v), pair(-11277, -23401));
   const __m128i green =
-      _mm_packs_epi32(_mm_srai_epi32(_mm_add_epi32(low, half), 16), _mm_srai_epi32(_mm_add_epi32(high, half), 16));
-  return {_mm_add_epi16(v, red), _mm_sub_epi16(green, v), _mm_add_epi16(two_u, blue)};
+      _mm_packs_epi32(_mm_srai_epi32(_mm_add_epi32(low, half), 15), _mm_srai_epi32(_mm_add_epi32(high, half), 15));
+  return {red, green, blue};
 }
 
 // Byte j of output vector k is channel (16k + j) % 3 of pixel (16k + j) / 3.
