@@ -38,13 +38,25 @@ void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_
   scan_.next_restart = static_cast<int>(interval & 7);
   scan_.next_mcu = interval * scan.restart_interval;
   entropy_.start(bytes, offset);
-  for (int i = 0; !scan.is_progressive && i < scan.n_components; ++i) {
+  if (!scan.is_progressive) set_up_batch();
+}
+
+// The blocks of each component in turn [T.81 A.2.3].
+void McuDecoder::set_up_batch() {
+  slots_.clear();
+  for (int i = 0; i < scan_.n_components; ++i) {
     ScanComponent& sc = scan_.components[i];
     sc.blocks_per_row = static_cast<size_t>(kBatchMcus * sc.h);
     levels_[i].resize(64 * sc.blocks_per_row * static_cast<size_t>(sc.v));
     last_[i].resize(sc.blocks_per_row * static_cast<size_t>(sc.v));
     sc.levels = levels_[i].data();
     sc.last = last_[i].data();
+    for (int by = 0; by < sc.v; ++by)
+      for (int bx = 0; bx < sc.h; ++bx) {
+        const size_t block = static_cast<size_t>(by) * sc.blocks_per_row + static_cast<size_t>(bx);
+        slots_.push_back({sc.dc_table, sc.ac_table, sc.ac_pairs, &sc.dc, sc.levels + 64 * block, sc.last + block,
+                          static_cast<size_t>(sc.h)});
+      }
   }
 }
 
@@ -57,7 +69,7 @@ Result<void> McuDecoder::decode_row(int mcu_row, ComponentPlanes& planes) {
       std::fill(last_[i].begin(), last_[i].end(), uint8_t{0});
     }
     for (int j = 0; j < n; ++j) {
-      for (ScanComponent& sc : scan_.components) sc.first_block = static_cast<size_t>(j * sc.h);
+      mcu_in_batch_ = static_cast<size_t>(j);
       PAC_CHECK(read_next_mcu());
     }
     if (!scan_.needed.has_row(mcu_row) || !scan_.needed.overlaps_columns(mcu, n)) continue;
@@ -98,7 +110,7 @@ Result<void> McuDecoder::read_mcu() {
     scan_.to_restart -= 1;
   }
   entropy_.prepare_mcu();
-  const BlockError error = read_blocks();
+  const BlockError error = scan_.is_progressive ? read_blocks() : read_mcu_blocks(entropy_, slots_, mcu_in_batch_);
   if (entropy_.overrun()) {
     const uint64_t at = find_marker(bytes_, entropy_.byte_offset());
     if (at == bytes_.size()) return Failure{Error::truncated, at, "file ends inside the entropy-coded data"};
@@ -108,7 +120,7 @@ Result<void> McuDecoder::read_mcu() {
   return {};
 }
 
-// The blocks of each component in turn [T.81 A.2.3].
+// Of a progressive scan.
 BlockError McuDecoder::read_blocks() {
   for (int i = 0; i < scan_.n_components; ++i) {
     ScanComponent& sc = scan_.components[i];
@@ -116,10 +128,8 @@ BlockError McuDecoder::read_blocks() {
       for (int bx = 0; bx < sc.h; ++bx) {
         const size_t block = sc.first_block + static_cast<size_t>(by) * sc.blocks_per_row + static_cast<size_t>(bx);
         int16_t* levels = sc.levels + 64 * block;
-        const BlockError error = scan_.is_progressive
-                                     ? read_progressive_block(entropy_, scan_.progression, sc.dc_table, sc.ac_table,
-                                                              sc.dc, scan_.eob_run, levels)
-                                     : read_block(entropy_, *sc.dc_table, *sc.ac_table, sc.dc, levels, sc.last[block]);
+        const BlockError error =
+            read_progressive_block(entropy_, scan_.progression, sc.dc_table, sc.ac_table, sc.dc, scan_.eob_run, levels);
         if (error != BlockError::none) return error;
       }
     }

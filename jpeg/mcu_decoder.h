@@ -36,10 +36,11 @@ struct ScanComponent {
   int h = 1, v = 1;  // blocks in an MCU
   const HuffmanDecoder* dc_table = nullptr;
   const HuffmanDecoder* ac_table = nullptr;
+  const AcPairs* ac_pairs = nullptr;
   const uint16_t* steps = nullptr;
   int dc = 0;
-  // The first block of the MCU at hand, and blocks from one row of blocks to the next: of the batch, or of all levels
-  // of the component.
+  // Blocks from one row of blocks to the next: of the batch, or of all levels of the component; of the latter, the
+  // first block of the MCU at hand.
   size_t first_block = 0, blocks_per_row = 0;
   int16_t* levels = nullptr;  // natural order
   uint8_t* last = nullptr;    // zigzag positions behind which all is 0; null in progressive scans
@@ -83,6 +84,7 @@ class McuDecoder {
   Result<void> collect_row(int mcu_row);
   Result<void> read_next_mcu();
   Result<void> read_mcu();
+  void set_up_batch();
   BlockError read_blocks();
   Result<void> pass_restart(int expected);
   int64_t resume_at(int64_t failed_mcu);
@@ -95,6 +97,8 @@ class McuDecoder {
   EntropyReader entropy_;
   std::vector<int16_t> levels_[kMaxComponents];
   std::vector<uint8_t> last_[kMaxComponents];
+  std::vector<BlockSlot> slots_;  // of an MCU of a sequential scan
+  size_t mcu_in_batch_ = 0;
 };
 
 }  // namespace pac::jpeg

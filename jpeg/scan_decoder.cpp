@@ -132,8 +132,21 @@ Result<const HuffmanDecoder*> ScanDecoder::set_up_table(const ScanHeader& header
   if (spec->n_symbols() == 0 || std::memcmp(&known, spec, sizeof known) != 0) {
     make_decoder(*spec, table);
     known = *spec;
+    if (table_class == 1) has_ac_pairs_[id] = false;
   }
   return &table;
+}
+
+// The pairs of an AC table take as long to make as some thousand blocks take to read without them.
+const AcPairs* ScanDecoder::set_up_pairs(uint8_t id) {
+  constexpr int64_t kMinPixels = 512 * 512;
+  const Frame& frame = reader_.headers().frame;
+  if (!has_ac_pairs_[id]) {
+    if (int64_t{frame.width} * frame.height < kMinPixels) return nullptr;
+    make_ac_pairs(tables_[1][id], ac_pairs_[id]);
+    has_ac_pairs_[id] = true;
+  }
+  return &ac_pairs_[id];
 }
 
 Result<void> ScanDecoder::set_up_component(const ScanHeader& header, int i, ScanComponent& sc) {
@@ -157,6 +170,7 @@ Result<void> ScanDecoder::set_up_component(const ScanHeader& header, int i, Scan
   if (!is_progressive_) {
     if (decoded_[sc.index]) return Failure{Error::corrupt, header.offset, "second scan of a component"};
     decoded_[sc.index] = true;
+    sc.ac_pairs = set_up_pairs(header.components[i].ac_table);
     return {};
   }
   if (p.is_dc()) decoded_[sc.index] = true;

@@ -60,6 +60,7 @@ class ScanDecoder {
   Result<void> decode_scans();
   Result<void> set_up(const ScanHeader& header, Scan& scan);
   Result<const HuffmanDecoder*> set_up_table(const ScanHeader& header, int table_class, uint8_t id);
+  const AcPairs* set_up_pairs(uint8_t id);
   Result<void> set_up_component(const ScanHeader& header, int i, ScanComponent& sc);
   Result<void> decode_scan(const ScanHeader& header);
   bool decode_bands(const ScanHeader& header, const Scan& scan);
@@ -89,6 +90,8 @@ class ScanDecoder {
   std::optional<ThreadPool> pool_;  // where several threads decode
   HuffmanDecoder tables_[2][4];     // [class][destination]
   HuffmanSpec table_specs_[2][4];   // that tables_ were made of
+  AcPairs ac_pairs_[4];             // made of tables_[1], where has_ac_pairs_
+  bool has_ac_pairs_[4] = {};
   uint16_t steps_[kMaxComponents][64] = {};
   std::vector<int16_t> levels_[kMaxComponents];
 };

@@ -116,7 +116,7 @@ BlockError read_dc(BitWindow& bits, const HuffmanDecoder& table, int& dc) {
 }
 
 // What a look-up with value 0 stands for: EOB, ZRL, or a level whose code or extra bits are longer than the index.
-// At least 46 bits are in the window. k: the position at hand, moved behind the level read.
+// k: the position at hand, moved behind the level read.
 enum class Step : uint8_t { level, end, undefined_code, undefined_symbol };
 Step read_rare(BitWindow& bits, const HuffmanDecoder& table, HuffmanDecoder::Entry entry, int& k, int16_t* levels) {
   bits.skip(entry.length);
@@ -133,43 +133,70 @@ Step read_rare(BitWindow& bits, const HuffmanDecoder& table, HuffmanDecoder::Ent
   return Step::level;
 }
 
-}  // namespace
+// One AC symbol with its extra bits, k < 64.
+Step read_ac(BitWindow& bits, const HuffmanDecoder& table, int& k, int16_t* levels) {
+  bits.refill();
+  const HuffmanDecoder::Entry entry = table.lookup[bits.peek(HuffmanDecoder::kLookupBits)];
+  if (entry.value == 0) return read_rare(bits, table, entry, k, levels);
+  k += entry.symbol >> 4;
+  bits.skip(entry.length);
+  levels[kNatural.of[k++]] = entry.value;
+  return Step::level;
+}
 
-BlockError read_block(EntropyReader& reader, const HuffmanDecoder& dc_table, const HuffmanDecoder& ac_table, int& dc,
-                      int16_t* levels, uint8_t& last) {
-  constexpr int kBits = HuffmanDecoder::kLookupBits;
-  BitWindow bits = reader.bits;  // a copy that the compiler keeps in registers
-  BlockError error = read_dc(bits, dc_table, dc);
-  levels[0] = static_cast<int16_t>(dc);
+// Look-ups of pairs as long as they find something: moves k; true if the block has ended with an EOB.
+inline bool read_ac_pairs(BitWindow& bits, const AcPairs& pairs, int& k, int16_t* levels) {
+  constexpr int kLookups = 56 / AcPairs::kBits;  // without refill()
+  for (;;) {
+    bits.refill();
+    for (int i = 0; i < kLookups; ++i) {
+      const AcPairs::Entry entry = pairs.lookup[bits.peek(AcPairs::kBits)];
+      const int next = k + entry.advance;
+      if (next > 64) return false;
+      // The second one first: if it is no level, its 0 may meet the first where the block ends.
+      levels[kNatural.of[k + entry.place[1]]] = entry.level[1];
+      levels[kNatural.of[k + entry.place[0]]] = entry.level[0];
+      bits.skip(entry.length_and_end & AcPairs::kLengthMask);
+      k = next;
+      if ((entry.length_and_end & AcPairs::kEnds) != 0) return true;
+    }
+  }
+}
+
+// Returns the error, if any.
+inline BlockError read_block(BitWindow& bits, const BlockSlot& slot, int16_t* levels, uint8_t& last) {
+  if (const BlockError error = read_dc(bits, *slot.dc_table, *slot.dc); error != BlockError::none) return error;
+  levels[0] = static_cast<int16_t>(*slot.dc);
+  BlockError error = BlockError::none;
   int k = 1, end = 1;  // the next position; behind the last level
   while (k < 64 && error == BlockError::none) {
-    bits.refill();
-    // Twice: a found level takes at most kBits of 56, and then there is enough for a rare one.
-    HuffmanDecoder::Entry entry = ac_table.lookup[bits.peek(kBits)];
-    if (entry.value != 0) {
-      k += entry.symbol >> 4;
-      bits.skip(entry.length);
-      levels[kNatural.of[k]] = entry.value;
-      end = ++k;
-      if (k >= 64) break;
-      entry = ac_table.lookup[bits.peek(kBits)];
-      if (entry.value != 0) {
-        k += entry.symbol >> 4;
-        bits.skip(entry.length);
-        levels[kNatural.of[k]] = entry.value;
-        end = ++k;
-        continue;
-      }
+    if (slot.ac_pairs != nullptr) {
+      const bool at_end = read_ac_pairs(bits, *slot.ac_pairs, k, levels);
+      end = at_end ? k - 1 : k;
+      if (at_end || k == 64) break;
     }
-    const Step step = read_rare(bits, ac_table, entry, k, levels);
+    const Step step = read_ac(bits, *slot.ac_table, k, levels);
     if (step == Step::end) break;
     if (step == Step::undefined_code) error = BlockError::undefined_code;
     if (step == Step::undefined_symbol) error = BlockError::undefined_symbol;
     end = k;
   }
-  reader.bits = bits;
   if (k > 64 && error == BlockError::none) error = BlockError::past_end;
   last = static_cast<uint8_t>(end > 64 ? 63 : end - 1);
+  return error;
+}
+
+}  // namespace
+
+BlockError read_mcu_blocks(EntropyReader& reader, std::span<const BlockSlot> slots, size_t mcu) {
+  BitWindow bits = reader.bits;  // a copy that the compiler keeps in registers
+  BlockError error = BlockError::none;
+  for (const BlockSlot& slot : slots) {
+    const size_t block = mcu * slot.blocks_in_row;
+    error = read_block(bits, slot, slot.levels + 64 * block, slot.last[block]);
+    if (error != BlockError::none) break;
+  }
+  reader.bits = bits;
   return error;
 }
 

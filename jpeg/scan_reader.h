@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 
+#include "jpeg/ac_pairs.h"
 #include "jpeg/huffman.h"
 
 namespace pac::jpeg {
@@ -81,10 +82,19 @@ class EntropyReader {
 
 enum class BlockError : uint8_t { none, undefined_code, past_end, undefined_symbol };
 
-// Reads one block's levels into `levels` (64 in natural order, all zero before). `dc` is PRED, updated (wraps modulo
-// 2^16). Returns the zigzag position of the last level read in *last. On an error the levels read so far stay.
-BlockError read_block(EntropyReader& reader, const HuffmanDecoder& dc_table, const HuffmanDecoder& ac_table, int& dc,
-                      int16_t* levels, uint8_t& last);
+// A block of each MCU of a sequential scan: what decodes it and where it goes.
+struct BlockSlot {
+  const HuffmanDecoder* dc_table = nullptr;
+  const HuffmanDecoder* ac_table = nullptr;
+  const AcPairs* ac_pairs = nullptr;  // made from ac_table, or null: small images are done before the look-up is made
+  int* dc = nullptr;                  // PRED, updated (wraps modulo 2^16)
+  int16_t* levels = nullptr;          // of the MCU at hand: 64 in natural order, all zero before
+  uint8_t* last = nullptr;            // gets the zigzag position of the last level read
+  size_t blocks_in_row = 1;           // to the same block of the next MCU
+};
+
+// Reads the blocks of MCU number `mcu` of a batch. On an error the levels read so far stay.
+BlockError read_mcu_blocks(EntropyReader& reader, std::span<const BlockSlot> slots, size_t mcu);
 
 // One symbol [T.81 F.2.2.3 DECODE], or -1. At least 16 bits must be in the reservoir.
 int read_symbol(BitWindow& bits, const HuffmanDecoder& table);
