@@ -9,9 +9,9 @@ size_t strip_size(const Component& c) {
 
 }  // namespace
 
-void CoefficientSource::reset(const SourceImage& image, Subsampling subsampling, const Kernels& kernels, bool keep_all,
+void CoefficientSource::reset(const SourceImage& image, const Frame& frame, const Kernels& kernels, bool keep_all,
                               int first_row, int end_row) {
-  frame_ = make_frame(image.width(), image.height(), subsampling);
+  frame_ = frame;
   keep_all_ = keep_all;
   kernels_ = &kernels;
   strips_.reset(frame_, image, kernels);

@@ -13,7 +13,7 @@ class CoefficientSource {
  public:
   // Serves the MCU rows [first_row, end_row). keep_all: transform all of them now; else each MCU row when row() asks
   // for it. Keeps its buffers.
-  void reset(const SourceImage& image, Subsampling subsampling, const Kernels& kernels, bool keep_all, int first_row,
+  void reset(const SourceImage& image, const Frame& frame, const Kernels& kernels, bool keep_all, int first_row,
              int end_row);
 
   const Frame& frame() const { return frame_; }

@@ -8,28 +8,6 @@
 namespace pac::jpeg {
 namespace {
 
-const Kernels& kernels_of(Isa isa) {
-  const Kernels* table = kernels_for(isa);
-  return table != nullptr ? *table : kernels();
-}
-
-Result<void> check_options(const DecodeOptions& options) {
-  if (options.threads < 0 || options.threads > 1024)
-    return Failure{Error::bad_argument, 0, "thread count is not within 0..1024"};
-  const int scale = options.scale_denominator;
-  if (scale != 1 && scale != 2 && scale != 4 && scale != 8)
-    return Failure{Error::bad_argument, 0, "scale denominator is not 1, 2, 4 or 8"};
-  return {};
-}
-
-DecodeRequest request_of(const DecodeOptions& options) {
-  DecodeRequest request;
-  request.limits = options.limits;
-  request.scale = options.scale_denominator;
-  request.crop = options.crop;
-  return request;
-}
-
 RowTarget rgb_target(RgbView view) {
   RowTarget target;
   target.rgb = view;
@@ -107,7 +85,7 @@ Result<DecodeReport> decode_rows(std::span<const uint8_t> bytes, PixelFormat for
 Result<SamplePlanes> decode_planes(std::span<const uint8_t> bytes, const DecodeOptions& options, Damaged damaged) {
   if (options.crop) return Failure{Error::bad_argument, 0, "planes cannot be cropped"};
   DecodeRequest request = request_of(options);
-  request.keeps_planes = true;
+  request.wanted = Wanted::planes;
   PAC_TRY(const auto decoder, open_decoder(bytes, options, request));
   PAC_CHECK(decoder->decode_planes(damaged == Damaged::keep));
   const Frame& frame = decoder->scaled().frame;

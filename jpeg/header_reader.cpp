@@ -53,6 +53,11 @@ ColorModel color_model(const Frame& frame, bool jfif, int adobe_transform) {
 
 }  // namespace
 
+void HeaderReader::inherit(const TableState& tables) {
+  headers_.tables = tables;
+  headers_.info.quant_tables = tables.quant_tables;
+}
+
 Result<void> HeaderReader::start() {
   if (bytes_.empty()) return Failure{Error::truncated, 0, "empty file"};
   if (bytes_[0] != 0xFF || (bytes_.size() > 1 && bytes_[1] != kSoi)) return corrupt(0, "not a JPEG file: no SOI");
@@ -115,6 +120,16 @@ Result<ScanHeader> HeaderReader::next_scan() {
   }
 }
 
+Result<void> HeaderReader::read_tables_only() {
+  for (;;) {
+    PAC_TRY(const int code, next_marker());
+    if (code == kEoi) return {};
+    if (code == kSoi) return corrupt(marker_offset_, "second SOI");
+    if (code == kSos || is_start_of_frame(code)) return corrupt(marker_offset_, "an image where only tables are due");
+    if (!is_restart(code) && code != kTem) PAC_CHECK(read_segment(code));
+  }
+}
+
 Result<void> HeaderReader::read_segment(int code) {
   const uint64_t offset = marker_offset_;
   PAC_TRY(const Segment s, segment());
@@ -157,13 +172,13 @@ Result<void> HeaderReader::read_dqt(const Segment& s) {
       table[natural] = static_cast<uint16_t>(step);
       i += step_bytes;
     }
-    headers_.info.quant_tables[static_cast<size_t>(id)] = table;
+    headers_.info.quant_tables[static_cast<size_t>(id)] = headers_.tables.quant_tables[static_cast<size_t>(id)] = table;
   }
   return {};
 }
 
 Result<void> HeaderReader::read_dht(const Segment& s) {
-  headers_.any_dht = headers_.any_dht || !s.data.empty();
+  headers_.tables.any_dht = headers_.tables.any_dht || !s.data.empty();
   for (size_t i = 0; i < s.data.size();) {
     const int table_class = s.u8(i) >> 4, id = s.u8(i) & 15;
     if (table_class > 1) return corrupt(s.offset + i, "DHT: table class above 1");
@@ -181,8 +196,8 @@ Result<void> HeaderReader::read_dht(const Segment& s) {
     for (int k = 0; table_class == 0 && k < n; ++k)
       if (spec.symbols[k] > 15) return corrupt(s.offset + i, "DHT: DC category above 15");
     i += static_cast<size_t>(n);
-    headers_.huffman[table_class][id] = spec;
-    headers_.have_huffman[table_class][id] = true;
+    headers_.tables.huffman[table_class][id] = spec;
+    headers_.tables.have_huffman[table_class][id] = true;
   }
   return {};
 }
@@ -325,7 +340,7 @@ void HeaderReader::read_app(int code, const Segment& s) {
 void HeaderReader::finish_info() {
   Info& info = headers_.info;
   info.header_bytes = position_;
-  info.default_huffman = !headers_.any_dht;
+  info.default_huffman = !headers_.tables.any_dht;
   info.color = color_model(headers_.frame, info.jfif, info.adobe_transform);
 }
 

@@ -1,7 +1,9 @@
 // Marker segments of any JPEG file, read in syntax order [T.81 B.2]: everything that is not entropy-coded data.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,15 +26,21 @@ struct ScanHeader {
   uint64_t data_offset = 0;  // of the entropy-coded data behind it
 };
 
+// Tables that stay from file to file of a stream [T.81 B.5].
+struct TableState {
+  std::array<std::optional<QuantTable>, 4> quant_tables;
+  HuffmanSpec huffman[2][4];  // [class: 0 DC, 1 AC][destination]
+  bool have_huffman[2][4] = {};
+  bool any_dht = false;
+};
+
 // State that segments leave behind.
 struct Headers {
   Info info;  // `unsupported` set as soon as a segment says so
   Frame frame;
   bool have_frame = false;
   uint64_t frame_offset = 0;
-  HuffmanSpec huffman[2][4];  // [class: 0 DC, 1 AC][destination]
-  bool have_huffman[2][4] = {};
-  bool any_dht = false;
+  TableState tables;  // its quant_tables are those of `info`, too
   bool is_progressive() const { return info.start_of_frame == 0xC2; }
   int warnings = 0;  // bytes between segments that are no segment
 };
@@ -41,10 +49,14 @@ class HeaderReader {
  public:
   HeaderReader(std::span<const uint8_t> bytes, const Limits& limits) : bytes_(bytes), limits_(limits) {}
 
+  // Before start(): tables from earlier files.
+  void inherit(const TableState& tables);
   // SOI: once, first.
   Result<void> start();
   // Segments up to and with the next SOS, or EOI. Call again with the position behind the scan's data.
   Result<ScanHeader> next_scan();
+  // Instead of next_scan(): segments up to EOI, of which none may be a frame or a scan.
+  Result<void> read_tables_only();
 
   void set_position(uint64_t offset) { position_ = offset; }
   const Headers& headers() const { return headers_; }

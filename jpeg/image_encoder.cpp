@@ -6,7 +6,9 @@
 
 #include "base/kernels/kernels.h"
 #include "jpeg/marker_writer.h"
+#include "jpeg/metadata.h"
 #include "jpeg/quantizer.h"
+#include "jpeg/stream_tables.h"
 #include "jpeg/tables.h"
 
 namespace pac::jpeg {
@@ -34,6 +36,16 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
   if (options.restart_interval_mcus < 0 || options.restart_interval_mcus > 65535)
     return bad("restart interval is not within 0..65535");
   if (options.threads < 0 || options.threads > 1024) return bad("thread count is not within 0..1024");
+  if (options.sampling && options.subsampling != Subsampling::gray) {
+    int n_blocks = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const int h = options.sampling->h[i], v = options.sampling->v[i];
+      if (h < 1 || h > 4 || v < 1 || v > 4) return bad("sampling factor is not within 1..4");
+      n_blocks += h * v;
+    }
+    if (n_blocks > kMaxBlocksInMcu) return bad("sampling factors make more than 10 blocks in an MCU");
+  }
+  if (options.metadata != nullptr) PAC_CHECK(check_metadata(*options.metadata));
   if (!options.tables) return {};
   for (const QuantTable* table : {&options.tables->luma, &options.tables->chroma})
     for (const uint16_t step : *table)
@@ -74,18 +86,25 @@ void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options,
   options_ = options;
   const Kernels* table = kernels_for(options.isa);
   kernels_ = table != nullptr ? table : &kernels();
-  const bool design = !options.tables && options.table_source == TableSource::adapted;
-  split(make_frame(image.width(), image.height(), options.subsampling));
+  const bool design = !options.tables && options.stream == nullptr && options.table_source == TableSource::adapted;
+  if (image.pulled != nullptr || image.pixels.data != nullptr) options_.threads = 1;
+  const Frame frame = make_frame(image, options);
+  split(frame);
   for_each_band([&](Band& band) {
-    band.source.reset(image, options.subsampling, *kernels_, keep_coefficients || design || options.trellis,
-                      band.first_row, band.end_row);
+    band.source.reset(image, frame, *kernels_, keep_coefficients || design || options.trellis, band.first_row,
+                      band.end_row);
   });
   if (!design) return;
   designer_.reset();
   for (Band& band : bands_) designer_.add_rows(band.source, band.first_row, band.end_row);
 }
 
+ScanTables ImageEncoder::known_tables() const {
+  return options_.stream != nullptr ? options_.stream->state().huffman : standard_tables();
+}
+
 QuantTables ImageEncoder::tables_at(double quality, bool scale_tables) const {
+  if (options_.stream != nullptr) return options_.stream->steps();
   if (options_.tables) return scale_tables ? scaled_tables(reference_of(*options_.tables), quality) : *options_.tables;
   switch (options_.table_source) {
     case TableSource::tuned:
@@ -170,8 +189,8 @@ double ImageEncoder::importance_of(int c, const int16_t* coefficients) const {
 
 // What symbols cost: the standard tables' lengths, or those of tables made for the plainly quantized image.
 void ImageEncoder::measure_costs() {
-  ScanTables tables = standard_tables();
-  if (options_.huffman == Huffman::optimal) {
+  ScanTables tables = known_tables();
+  if (options_.huffman == Huffman::optimal && options_.stream == nullptr) {
     Histogram counts = histogram();
     smooth(counts.count[kAc0]);
     smooth(counts.count[kAc1]);
@@ -183,18 +202,26 @@ void ImageEncoder::measure_costs() {
   use_trellis_ = true;
 }
 
-void ImageEncoder::write_file(const QuantTables& tables, double quality, ByteSink& sink) {
+void ImageEncoder::prepare(const QuantTables& tables, double quality) {
   set_up(tables, quality);
-  if (options_.trellis) {
-    measure_visibility();
-    measure_costs();
-    quantizers_[0] = make_quantizer(tables.luma, 0.0);
-    quantizers_[1] = make_quantizer(tables.chroma, 0.0);
-  }
+  if (!options_.trellis) return;
+  measure_visibility();
+  measure_costs();
+  quantizers_[0] = make_quantizer(tables.luma, 0.0);
+  quantizers_[1] = make_quantizer(tables.chroma, 0.0);
+}
+
+Histogram ImageEncoder::count_symbols(const QuantTables& tables, double quality) {
+  prepare(tables, quality);
+  return histogram();
+}
+
+void ImageEncoder::write_file(const QuantTables& tables, double quality, ByteSink& sink) {
+  prepare(tables, quality);
   // With known tables levels become bits at once; else all tokens wait for the tables made of them.
-  const bool direct = options_.huffman == Huffman::standard;
-  const ScanTables scan_tables = direct ? standard_tables() : optimal_tables(histogram());
-  write_headers(bands_[0].source.frame(), tables, scan_tables, options_.restart_interval_mcus, sink);
+  const bool direct = options_.huffman == Huffman::standard || options_.stream != nullptr;
+  const ScanTables scan_tables = direct ? known_tables() : optimal_tables(histogram());
+  write_headers(bands_[0].source.frame(), tables, scan_tables, options_, sink);
   write_entropy_coded(scan_tables, direct, sink);
   write_end_of_image(sink);
 }

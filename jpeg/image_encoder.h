@@ -28,6 +28,9 @@ class ImageEncoder {
   // `scale_tables`.
   QuantTables tables_at(double quality, bool scale_tables) const;
 
+  // How often each symbol occurs with those tables.
+  Histogram count_symbols(const QuantTables& tables, double quality);
+
   // The whole file with those tables. `quality`: the one that made them, for what else depends on it.
   void write_file(const QuantTables& tables, double quality, ByteSink& sink);
 
@@ -43,6 +46,7 @@ class ImageEncoder {
     std::vector<uint8_t> bytes;  // of its rows, where there are other bands
   };
 
+  ScanTables known_tables() const;
   void set_up(const QuantTables& tables, double quality);
   void split(const Frame& frame);
   template <class Fn>
@@ -52,6 +56,7 @@ class ImageEncoder {
   Histogram histogram();
   void write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink);
   void write_band(Band& band, const ScanTables& tables, bool direct, ByteSink& sink);
+  void prepare(const QuantTables& tables, double quality);
   void measure_costs();
   void measure_visibility();
   double importance_of(int c, const int16_t* coefficients) const;

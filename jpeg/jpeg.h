@@ -48,6 +48,15 @@ QuantTables halved(const QuantTables& tables);
 
 // ---- Encoding -----------------------------------------------------------------------------------------------------
 
+// Sampling factors [T.81 A.1.1] of Y, Cb and Cr: how many samples of one stand beside those of another. 2x2, 1x1, 1x1
+// is 4:2:0. Each 1..4, and at most 10 blocks in all: the sum of h * v.
+struct SamplingFactors {
+  std::array<uint8_t, 3> h{1, 1, 1}, v{1, 1, 1};
+};
+
+struct Metadata;     // jpeg/metadata.h
+class StreamTables;  // jpeg/abbreviated.h
+
 // Where the quantization tables come from when EncodeOptions::tables does not give them.
 enum class TableSource : uint8_t {
   annex_k,  // annex_k_tables(quality)
@@ -61,6 +70,7 @@ struct EncodeOptions {
   TableSource table_source = TableSource::annex_k;
   Tune tune = Tune::visual;  // for TableSource::tuned and adapted
   Subsampling subsampling = Subsampling::yuv420;
+  std::optional<SamplingFactors> sampling = {};  // instead of `subsampling` (unless that is gray), averaging boxes
   Huffman huffman = Huffman::optimal;
   int restart_interval_mcus = 0;  // 0..65535; 0 = none
   double dead_zone = 0.0;         // 0 rounds to nearest; d rounds |x|/q at 0.5 + d (0..0.49) for AC
@@ -68,10 +78,14 @@ struct EncodeOptions {
   int threads = 1;                // 0 = all processors, at most 1024. Work is shared only where restart markers stand
                                   // between rows of MCUs (see row_restart_interval); results never depend on it
   Isa isa = best_isa();           // results never depend on it
+  const Metadata* metadata = nullptr;    // written behind the JFIF segment, whose density it tells
+  const StreamTables* stream = nullptr;  // tables that the decoder has already: `tables`, `table_source` and `huffman`
+                                         // do not count, the file holds none [T.81 B.4]
 };
 
 // The restart interval of one row of MCUs, so that rows can be coded and decoded side by side.
 int row_restart_interval(int width, Subsampling subsampling);
+int row_restart_interval(int width, const SamplingFactors& sampling);
 
 // Presets, all with tuned_tables(tune): fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables
 // and dead zone 0.18; best = normal with the trellis, which for ssim and visual lets errors hide in busy blocks.
@@ -83,7 +97,9 @@ Result<std::vector<uint8_t>> encode(ConstRgbView image, const EncodeOptions& opt
 Result<std::vector<uint8_t>> encode_gray(PlaneView<const uint8_t> image, const EncodeOptions& options = {});
 
 // No file of such an image is longer than this, whatever the pixels and the other options. Sides 1..65535.
+// Metadata come on top: metadata_bytes().
 uint64_t encode_bound(int width, int height, Subsampling subsampling, int restart_interval_mcus = 0);
+uint64_t encode_bound(int width, int height, const SamplingFactors& sampling, int restart_interval_mcus = 0);
 
 // As encode(), into the caller's buffer: the number of bytes written. Errors: also out_of_space (contents of `out` are
 // then unspecified). encode_bound() bytes always suffice.

@@ -38,30 +38,38 @@ void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_
   scan_.next_restart = static_cast<int>(interval & 7);
   scan_.next_mcu = interval * scan.restart_interval;
   entropy_.start(bytes, offset);
-  if (!scan.is_progressive) set_up_batch();
+  for (int i = 0; !scan.is_progressive && i < scan.n_components; ++i) {
+    ScanComponent& sc = scan_.components[i];
+    if (!scan.keeps_levels) {
+      sc.blocks_per_row = static_cast<size_t>(kBatchMcus * sc.h);
+      levels_[i].resize(64 * sc.blocks_per_row * static_cast<size_t>(sc.v));
+      sc.levels = levels_[i].data();
+    }
+    last_[i].resize(sc.blocks_per_row * static_cast<size_t>(sc.v));
+    sc.last = last_[i].data();
+  }
+  slots_.clear();
+  if (!scan.keeps_levels) set_up_slots(0);
 }
 
-// The blocks of each component in turn [T.81 A.2.3].
-void McuDecoder::set_up_batch() {
+// The blocks of each component in turn [T.81 A.2.3]: of the batch (as if of row 0), or of a row of MCUs whose levels are
+// kept.
+void McuDecoder::set_up_slots(int mcu_row) {
   slots_.clear();
   for (int i = 0; i < scan_.n_components; ++i) {
     ScanComponent& sc = scan_.components[i];
-    sc.blocks_per_row = static_cast<size_t>(kBatchMcus * sc.h);
-    levels_[i].resize(64 * sc.blocks_per_row * static_cast<size_t>(sc.v));
-    last_[i].resize(sc.blocks_per_row * static_cast<size_t>(sc.v));
-    sc.levels = levels_[i].data();
-    sc.last = last_[i].data();
+    const size_t first = static_cast<size_t>(mcu_row * sc.v) * sc.blocks_per_row;
     for (int by = 0; by < sc.v; ++by)
       for (int bx = 0; bx < sc.h; ++bx) {
         const size_t block = static_cast<size_t>(by) * sc.blocks_per_row + static_cast<size_t>(bx);
-        slots_.push_back({sc.dc_table, sc.ac_table, sc.ac_pairs, &sc.dc, sc.levels + 64 * block, sc.last + block,
-                          static_cast<size_t>(sc.h)});
+        slots_.push_back({sc.dc_table, sc.ac_table, sc.ac_pairs, &sc.dc, sc.levels + 64 * (first + block),
+                          sc.last + block, static_cast<size_t>(sc.h)});
       }
   }
 }
 
 Result<void> McuDecoder::decode_row(int mcu_row, ComponentPlanes& planes) {
-  if (scan_.is_progressive) return collect_row(mcu_row);
+  if (scan_.keeps_levels) return collect_row(mcu_row);
   for (int mcu = 0; mcu < scan_.mcus_per_row; mcu += kBatchMcus) {
     const int n = std::min(kBatchMcus, scan_.mcus_per_row - mcu);
     for (int i = 0; i < scan_.n_components; ++i) {
@@ -79,7 +87,9 @@ Result<void> McuDecoder::decode_row(int mcu_row, ComponentPlanes& planes) {
 }
 
 Result<void> McuDecoder::collect_row(int mcu_row) {
+  if (!scan_.is_progressive) set_up_slots(mcu_row);
   for (int mcu = 0; mcu < scan_.mcus_per_row; ++mcu) {
+    mcu_in_batch_ = static_cast<size_t>(mcu);
     for (ScanComponent& sc : scan_.components)
       sc.first_block = static_cast<size_t>(mcu_row * sc.v) * sc.blocks_per_row + static_cast<size_t>(mcu * sc.h);
     PAC_CHECK(read_next_mcu());

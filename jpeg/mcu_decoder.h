@@ -43,13 +43,14 @@ struct ScanComponent {
   // first block of the MCU at hand.
   size_t first_block = 0, blocks_per_row = 0;
   int16_t* levels = nullptr;  // natural order
-  uint8_t* last = nullptr;    // zigzag positions behind which all is 0; null in progressive scans
+  uint8_t* last = nullptr;    // zigzag positions behind which all is 0; null where levels are kept
 };
 
 struct Scan {
   int n_components = 0;
   ScanComponent components[kMaxComponents];
-  bool is_progressive = false;  // levels of whole components are collected, not turned into samples batch by batch
+  bool is_progressive = false;
+  bool keeps_levels = false;  // of whole components, not turned into samples batch by batch; so if progressive
   Progression progression;
   uint32_t eob_run = 0;
   int mcus_per_row = 0, mcu_rows = 0;
@@ -84,7 +85,7 @@ class McuDecoder {
   Result<void> collect_row(int mcu_row);
   Result<void> read_next_mcu();
   Result<void> read_mcu();
-  void set_up_batch();
+  void set_up_slots(int mcu_row);
   BlockError read_blocks();
   Result<void> pass_restart(int expected);
   int64_t resume_at(int64_t failed_mcu);

@@ -12,6 +12,34 @@
 
 namespace pac::jpeg {
 
+// ---- Encoding -----------------------------------------------------------------------------------------------------
+
+// As encode(), of any pixel format; gray is one component, whatever options.subsampling says. Errors: as encode.
+Result<std::vector<uint8_t>> encode_pixels(ConstPixelView image, const EncodeOptions& options = {});
+
+// Pulls rows from `source` as they are needed. With standard Huffman tables (or options.stream) and neither trellis nor
+// adapted tables, working memory is a few rows of MCUs whatever the height; optimal Huffman tables keep 4 bytes for
+// each coefficient that is not zero, the others all coefficients. One thread. Errors: as encode; bad_argument where the
+// source has no row to give.
+Result<std::vector<uint8_t>> encode_rows(int width, int height, PixelFormat format, const RowSource& source,
+                                         const EncodeOptions& options = {});
+
+// The same, whose bytes leave as they are made, in pieces of some kilobytes. A receiver that returns false ends it:
+// out_of_space. Tells how many bytes left.
+using ByteReceiver = std::function<bool(std::span<const uint8_t> bytes)>;
+Result<uint64_t> encode_rows(int width, int height, PixelFormat format, const RowSource& source,
+                             const ByteReceiver& receiver, const EncodeOptions& options = {});
+
+// Samples of Y, Cb and Cr [JFIF 1.02 p.3], or of Y alone with Subsampling::gray: what the file will hold, neither
+// converted nor averaged. Sizes as the sampling factors say: that of the picture times h / h_max and v / v_max, rounded
+// up.
+struct YccPlanes {
+  int width = 0, height = 0;  // pixels
+  PlaneView<const uint8_t> y, cb, cr;
+};
+// Errors: as encode; bad_argument (a plane has another size).
+Result<std::vector<uint8_t>> encode_planes(const YccPlanes& planes, const EncodeOptions& options = {});
+
 // ---- Decoding -----------------------------------------------------------------------------------------------------
 
 enum class Damaged : uint8_t {

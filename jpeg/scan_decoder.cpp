@@ -28,6 +28,7 @@ uint64_t level_bytes(const Frame& frame) {
 Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const DecodeRequest& request) {
   bytes_ = bytes;
   reader_ = HeaderReader(bytes, request.limits);
+  if (request.tables != nullptr) reader_.inherit(*request.tables);
   PAC_CHECK(reader_.start());
   PAC_TRY(first_scan_, reader_.next_scan());
   const Headers& headers = reader_.headers();
@@ -35,14 +36,15 @@ Result<void> ScanDecoder::open(std::span<const uint8_t> bytes, const DecodeReque
     return Failure{Error::unsupported, headers.frame_offset, headers.info.unsupported};
   const Frame& frame = headers.frame;
   is_progressive_ = headers.is_progressive();
-  keeps_planes_ = request.keeps_planes;
-  single_scan_ = !is_progressive_ && first_scan_.n_components == frame.n_components;
+  wanted_ = request.wanted;
+  keeps_levels_ = is_progressive_ || wanted_ == Wanted::levels;
+  single_scan_ = !keeps_levels_ && first_scan_.n_components == frame.n_components;
   scaled_ = scaled_frame(frame, request.scale);
   PAC_CHECK(choose_window(request));
   PAC_CHECK(check_memory(request));
-  const bool whole_planes = keeps_planes_ || (!single_scan_ && !is_progressive_);
+  const bool whole_planes = wanted_ == Wanted::planes || (!single_scan_ && !keeps_levels_);
   planes_.reset(scaled_, whole_planes, headers.info.color, *kernels_);
-  for (int c = 0; is_progressive_ && c < frame.n_components; ++c)
+  for (int c = 0; keeps_levels_ && c < frame.n_components; ++c)
     levels_[c].assign(n_padded_blocks(frame.components[c]) * 64, 0);
   return {};
 }
@@ -61,10 +63,10 @@ Result<void> ScanDecoder::choose_window(const DecodeRequest& request) {
 
 Result<void> ScanDecoder::check_memory(const DecodeRequest& request) {
   const Frame& frame = reader_.headers().frame;
-  const bool whole_planes = keeps_planes_ || (!single_scan_ && !is_progressive_);
+  const bool whole_planes = wanted_ == Wanted::planes || (!single_scan_ && !keeps_levels_);
   const uint64_t pixels = static_cast<uint64_t>(window_.width) * static_cast<uint64_t>(window_.height);
-  const uint64_t need = ComponentPlanes::size_bytes(scaled_, whole_planes) +
-                        (is_progressive_ ? level_bytes(frame) : 0) + (request.makes_image ? 3 * pixels : 0);
+  const uint64_t need = ComponentPlanes::size_bytes(scaled_, whole_planes) + (keeps_levels_ ? level_bytes(frame) : 0) +
+                        (request.makes_image ? 3 * pixels : 0);
   if (need > request.limits.max_bytes)
     return Failure{Error::limit_exceeded, reader_.headers().frame_offset,
                    "decoded image needs more memory than the limit"};
@@ -96,9 +98,10 @@ Result<void> ScanDecoder::decode(const RowTarget& target, bool lenient) {
   }
   output_.start(target, window_, first, width, reader_.headers().info.color);
   if (auto done = decode_scans(); !done.ok()) PAC_CHECK(damage_.tolerate(done.failure()));
+  if (wanted_ == Wanted::levels) return {};
   if (is_progressive_)
     transform_progressive();
-  else if (!single_scan_ && !keeps_planes_)
+  else if (!single_scan_ && wanted_ == Wanted::rows)
     output_.rows_ready(0, scaled_.frame.height, planes_);
   return {};
 }
@@ -121,9 +124,9 @@ Result<void> ScanDecoder::decode_scans() {
 Result<const HuffmanDecoder*> ScanDecoder::set_up_table(const ScanHeader& header, int table_class, uint8_t id) {
   const Headers& headers = reader_.headers();
   const HuffmanSpec* spec = nullptr;
-  if (headers.have_huffman[table_class][id])
-    spec = &headers.huffman[table_class][id];
-  else if (!headers.any_dht && id < 2)
+  if (headers.tables.have_huffman[table_class][id])
+    spec = &headers.tables.huffman[table_class][id];
+  else if (!headers.tables.any_dht && id < 2)
     spec = table_class == 0 ? &standard_dc(id) : &standard_ac(id);
   else
     return Failure{Error::corrupt, header.offset, "Huffman table is not defined"};
@@ -167,13 +170,11 @@ Result<void> ScanDecoder::set_up_component(const ScanHeader& header, int i, Scan
   if (needs_ac) {
     PAC_TRY(sc.ac_table, set_up_table(header, 1, header.components[i].ac_table));
   }
-  if (!is_progressive_) {
-    if (decoded_[sc.index]) return Failure{Error::corrupt, header.offset, "second scan of a component"};
-    decoded_[sc.index] = true;
-    sc.ac_pairs = set_up_pairs(header.components[i].ac_table);
-    return {};
-  }
+  if (!is_progressive_ && decoded_[sc.index])
+    return Failure{Error::corrupt, header.offset, "second scan of a component"};
+  if (!is_progressive_) sc.ac_pairs = set_up_pairs(header.components[i].ac_table);
   if (p.is_dc()) decoded_[sc.index] = true;
+  if (!keeps_levels_) return {};
   sc.blocks_per_row = static_cast<size_t>(sc.component->padded_width_blocks);
   sc.levels = levels_[sc.index].data();
   return {};
@@ -183,6 +184,7 @@ Result<void> ScanDecoder::set_up(const ScanHeader& header, Scan& scan) {
   const Frame& frame = reader_.headers().frame;
   scan.n_components = header.n_components;
   scan.is_progressive = is_progressive_;
+  scan.keeps_levels = keeps_levels_;
   scan.progression = header.progression;
   for (int i = 0; i < header.n_components; ++i) PAC_CHECK(set_up_component(header, i, scan.components[i]));
   const bool is_interleaved = header.n_components > 1;
@@ -204,7 +206,7 @@ Result<void> ScanDecoder::decode_scan(const ScanHeader& header) {
   mcus_.start(bytes_, scan, header.data_offset, damage_);
   for (int row = 0; row < end && !output_.is_stopped(); ++row) {
     PAC_CHECK(mcus_.decode_row(row, planes_));
-    if (single_scan_ && !keeps_planes_) write_finished_rows(row, scan.mcu_rows, mcu_height);
+    if (single_scan_ && wanted_ == Wanted::rows) write_finished_rows(row, scan.mcu_rows, mcu_height);
   }
   position_ = mcus_.byte_offset();
   return {};
@@ -234,7 +236,7 @@ void ScanDecoder::transform_progressive() {
           idct_reduced(size, levels, steps_[c], n, out, planes_.stride(c));
       }
     }
-    if (!keeps_planes_) write_finished_rows(row, frame.mcu_rows, 8 / scaled_.scale * frame.v_max);
+    if (wanted_ == Wanted::rows) write_finished_rows(row, frame.mcu_rows, 8 / scaled_.scale * frame.v_max);
   }
 }
 

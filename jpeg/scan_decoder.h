@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "jpeg/band_decoder.h"
 #include "jpeg/component_planes.h"
+#include "jpeg/decode_request.h"
 #include "jpeg/header_reader.h"
 #include "jpeg/jpeg.h"
 #include "jpeg/mcu_decoder.h"
@@ -18,15 +19,6 @@
 #include "jpeg/row_output.h"
 
 namespace pac::jpeg {
-
-// What is wanted of a file.
-struct DecodeRequest {
-  Limits limits;
-  int scale = 1;              // 1, 2, 4 or 8
-  std::optional<Crop> crop;   // of the scaled picture; empty: all of it
-  bool makes_image = true;    // 3 bytes a pixel of output count against the limits
-  bool keeps_planes = false;  // decode_planes() will be called
-};
 
 // Keeps its buffers from image to image. Call open(), then decode() once.
 class ScanDecoder {
@@ -51,6 +43,9 @@ class ScanDecoder {
   Result<void> decode_planes(bool lenient) { return decode({}, lenient); }
   ComponentPlanes& planes() { return planes_; }
   const ScaledFrame& scaled() const { return scaled_; }
+  // After decode(), Wanted::levels: of component c, whole MCUs, natural order; and its steps.
+  std::vector<int16_t> take_levels(int c) { return std::move(levels_[c]); }
+  const uint16_t* steps(int c) const { return steps_[c]; }
   const std::optional<Failure>& first_failure() const { return damage_.first; }
   int warnings() const { return damage_.warnings + reader_.headers().warnings; }
 
@@ -71,9 +66,10 @@ class ScanDecoder {
   std::span<const uint8_t> bytes_;
   HeaderReader reader_{{}, {}};
   ScanHeader first_scan_;
-  bool is_progressive_ = false;  // all levels are kept until the last scan
-  bool single_scan_ = false;     // all components in the first scan: rows go out while the scan is read
-  bool keeps_planes_ = false;
+  bool is_progressive_ = false;
+  bool keeps_levels_ = false;  // all of them until the last scan: progressive, or the caller wants them
+  bool single_scan_ = false;   // all components in the first scan: rows go out while the scan is read
+  Wanted wanted_ = Wanted::rows;
   bool is_partial_ = false;  // a crop: what nobody needs of the last scan is not read
   ScaledFrame scaled_;
   Crop window_;

@@ -82,9 +82,9 @@ class SizeSearch {
 Result<SizedFile> encode_to_size(ConstRgbView image, const EncodeOptions& options, uint64_t target_bytes) {
   EncodeOptions valid = options;
   valid.quality = 50;
-  PAC_CHECK(check_options({image, {}}, valid));
+  PAC_CHECK(check_options(rgb_image(image), valid));
   ImageEncoder encoder;
-  encoder.start({image, {}}, valid, true);
+  encoder.start(rgb_image(image), valid, true);
   // Adapted tables take a while to design, and the trellis's reference steps move with the quality.
   const bool adapted = !options.tables && options.table_source == TableSource::adapted;
   SizeSearch search(encoder, target_bytes, adapted ? 4 : 100, !adapted);

@@ -12,19 +12,36 @@ void repeat_last(uint8_t* row, int n, ptrdiff_t padded) {
 
 }  // namespace
 
-Frame make_frame(int width, int height, Subsampling subsampling) {
+SamplingFactors factors_of(Subsampling subsampling) {
+  SamplingFactors factors;
+  if (subsampling == Subsampling::yuv422 || subsampling == Subsampling::yuv420) factors.h[0] = 2;
+  if (subsampling == Subsampling::yuv420) factors.v[0] = 2;
+  return factors;
+}
+
+Frame make_frame(int width, int height, int n_components, const SamplingFactors& sampling) {
   Frame frame;
   frame.width = width;
   frame.height = height;
-  frame.n_components = subsampling == Subsampling::gray ? 1 : 3;
-  for (uint8_t i = 0; i < 3; ++i) {
-    frame.components[i].id = static_cast<uint8_t>(i + 1);
-    frame.components[i].quant_table = i == 0 ? 0 : 1;
+  frame.n_components = n_components;
+  for (uint8_t i = 0; i < n_components; ++i) {
+    Component& c = frame.components[i];
+    c.id = static_cast<uint8_t>(i + 1);
+    c.quant_table = i == 0 ? 0 : 1;
+    c.h = n_components > 1 ? sampling.h[i] : uint8_t{1};
+    c.v = n_components > 1 ? sampling.v[i] : uint8_t{1};
   }
-  if (subsampling == Subsampling::yuv422 || subsampling == Subsampling::yuv420) frame.components[0].h = 2;
-  if (subsampling == Subsampling::yuv420) frame.components[0].v = 2;
   finish_frame(frame);
   return frame;
+}
+
+Frame make_frame(int width, int height, Subsampling subsampling) {
+  return make_frame(width, height, subsampling == Subsampling::gray ? 1 : 3, factors_of(subsampling));
+}
+
+Frame make_frame(const SourceImage& image, const EncodeOptions& options) {
+  return make_frame(image.width(), image.height(), options.subsampling == Subsampling::gray ? 1 : 3,
+                    options.sampling ? *options.sampling : factors_of(options.subsampling));
 }
 
 int StripTransform::rows_of_blocks(const Component& c, int mcu_row) {
@@ -35,6 +52,7 @@ void StripTransform::reset(const Frame& frame, const SourceImage& image, const K
   frame_ = frame;
   image_ = image;
   kernels_ = &kernels;
+  general_.reset(frame, image, kernels);
   // Two samples for each chroma sample, so that the last box of a row is complete.
   const ptrdiff_t full_width = ptrdiff_t{frame.mcus_per_row} * 8 * frame.h_max;
   for (int i = 0; i < frame.n_components; ++i) {
@@ -58,6 +76,11 @@ void StripTransform::load_row(int y, uint8_t* luma, uint8_t* cb, uint8_t* cr) co
 
 // Fills planes_ with the samples of one MCU row.
 void StripTransform::load(int mcu_row) {
+  if (general_.is_needed()) {
+    for (int c = 0; c < frame_.n_components; ++c)
+      general_.load(mcu_row, c, planes_[c].samples.data(), planes_[c].stride);
+    return;
+  }
   const int h = frame_.h_max, v = frame_.v_max, mcu_height = 8 * v;
   const int first = mcu_row * mcu_height, n_rows = std::min(mcu_height, frame_.height - first);
   const ptrdiff_t full_width = planes_[0].stride;

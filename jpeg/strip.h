@@ -7,20 +7,16 @@
 #include "base/image.h"
 #include "base/kernels/kernels.h"
 #include "jpeg/frame.h"
+#include "jpeg/general_strip.h"
 #include "jpeg/jpeg.h"
 
 namespace pac::jpeg {
 
 // Sampling factors, ids 1..3 and quantization table numbers as JFIF wants them.
+SamplingFactors factors_of(Subsampling subsampling);
+Frame make_frame(int width, int height, int n_components, const SamplingFactors& sampling);
 Frame make_frame(int width, int height, Subsampling subsampling);
-
-// Exactly one of the two has data.
-struct SourceImage {
-  ConstRgbView rgb;
-  PlaneView<const uint8_t> gray;
-  int width() const { return rgb.data != nullptr ? rgb.width : gray.width; }
-  int height() const { return rgb.data != nullptr ? rgb.height : gray.height; }
-};
+Frame make_frame(const SourceImage& image, const EncodeOptions& options);
 
 // Cuts an image into MCU rows. Samples past the right and bottom edge repeat the last column, and the last
 // *downsampled* row, as the IJG software does. Keeps its buffers from image to image.
@@ -54,6 +50,7 @@ class StripTransform {
   const Kernels* kernels_ = nullptr;
   Plane planes_[3];             // one MCU row of each component, whole blocks wide
   Plane full_chroma_[2];        // up to two rows of Cb and Cr before downsampling
+  GeneralStrip general_;        // where the source or the sampling is none of the usual ones
   std::vector<uint8_t> spare_;  // rows that are computed and not wanted (chroma of a gray encoding)
 };
 

@@ -91,6 +91,50 @@ TEST_CASE("with the same choices our files are cjpeg's byte for byte") {
   }
 }
 
+TEST_CASE("files of unusual sampling factors are cjpeg's byte for byte, or djpeg's picture where cjpeg refuses") {
+  if (!have_peer("cjpeg") || !have_peer("djpeg")) return;
+  TempDir dir;
+  const struct {
+    jpeg::SamplingFactors factors;
+    const char* sample;
+  } kinds[] = {{{{1, 1, 1}, {2, 1, 1}}, "1x2,1x1,1x1"}, {{{4, 1, 1}, {1, 1, 1}}, "4x1,1x1,1x1"},
+               {{{4, 1, 1}, {2, 1, 1}}, "4x2,1x1,1x1"}, {{{2, 1, 1}, {2, 2, 2}}, "2x2,1x2,1x2"},
+               {{{2, 2, 1}, {2, 1, 1}}, "2x2,2x1,1x1"}, {{{1, 2, 1}, {1, 2, 1}}, "1x1,2x2,1x1"},
+               {{{3, 1, 1}, {1, 1, 1}}, "3x1,1x1,1x1"}, {{{1, 1, 1}, {4, 1, 2}}, "1x4,1x1,1x2"},
+               {{{2, 2, 2}, {1, 1, 1}}, "2x1,2x1,2x1"}, {{{3, 1, 3}, {1, 1, 1}}, "3x1,1x1,3x1"}};
+  for (const auto& [width, height] : {std::pair{1, 1}, {17, 33}, {50, 34}}) {
+    const RgbImage image = test_image(width, height);
+    const std::string ppm = write_ppm(dir, image);
+    std::string script = "cd " + dir.path();
+    for (size_t i = 0; i < std::size(kinds); ++i)
+      script += "; cjpeg -quality 85 -baseline -sample " + std::string(kinds[i].sample) + " -outfile " +
+                std::to_string(i) + ".jpg in.ppm";
+    run(script);
+    for (size_t i = 0; i < std::size(kinds); ++i) {
+      const char* const sample = kinds[i].sample;
+      CAPTURE(sample);
+      jpeg::EncodeOptions options;
+      options.quality = 85;
+      options.huffman = jpeg::Huffman::standard;
+      options.sampling = kinds[i].factors;
+      REQUIRE(*jpeg::encode(image.view(), options) == read_bytes(dir.file(std::to_string(i) + ".jpg")));
+    }
+  }
+  // Ratios that libjpeg averages nowhere: a picture that we read, near the original.
+  const RgbImage image = test_image(64, 48);
+  jpeg::EncodeOptions options;
+  options.quality = 95;
+  options.sampling = jpeg::SamplingFactors{{3, 2, 1}, {2, 1, 2}};
+  const auto decoded = jpeg::decode(*jpeg::encode(image.view(), options));
+  REQUIRE(decoded.ok());
+  CHECK(psnr_luma(image.view(), decoded->view()) > 30.0);
+  for (const auto& factors : {jpeg::SamplingFactors{{4, 4, 1}, {2, 2, 1}}, jpeg::SamplingFactors{{5, 1, 1}, {1, 1, 1}},
+                              jpeg::SamplingFactors{{1, 0, 1}, {1, 1, 1}}}) {
+    options.sampling = factors;
+    CHECK(jpeg::encode(image.view(), options).failure().error == Error::bad_argument);
+  }
+}
+
 // Options for cjpeg that reach every path of the decoder.
 constexpr const char* kVariants[] = {
     "-sample 1x1",

@@ -1,6 +1,8 @@
 // Pixel formats, strides, rows one at a time and planes: always the same picture.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -135,6 +137,131 @@ TEST_CASE("planes are the samples that the picture is made of") {
   CHECK(planes->planes[1].width == 11);
   CHECK(planes->planes[2].height == 7);
   CHECK(planes->planes[0].h == 2);
+}
+
+// The picture as `format`, with a gap behind each row.
+std::vector<uint8_t> converted(const RgbImage& image, PixelFormat format, ptrdiff_t stride) {
+  const int n = jpeg::bytes_per_pixel(format), red = is_blue_first(format) ? 2 : 0;
+  std::vector<uint8_t> bytes(static_cast<size_t>(stride * image.height()), 0x77);
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) {
+      uint8_t* out = bytes.data() + y * stride + n * x;
+      out[red] = image.pixel(x, y)[0];
+      out[1] = image.pixel(x, y)[1];
+      out[2 - red] = image.pixel(x, y)[2];
+    }
+  return bytes;
+}
+
+TEST_CASE("pixels of any format and rows from a callback encode to the bytes that the RGB image gives") {
+  const RgbImage image = test_image(39, 45);
+  for (const auto effort : {jpeg::Effort::fast, jpeg::Effort::normal, jpeg::Effort::best}) {
+    jpeg::EncodeOptions options = jpeg::options_for(effort, jpeg::Tune::psnr, 60);
+    options.restart_interval_mcus = 3;
+    options.threads = 2;
+    const auto expected = *jpeg::encode(image.view(), options);
+    for (const PixelFormat format : kColorFormats) {
+      const ptrdiff_t stride = 39 * jpeg::bytes_per_pixel(format) + 3;
+      const auto bytes = converted(image, format, stride);
+      REQUIRE(*jpeg::encode_pixels({bytes.data(), 39, 45, stride, format}, options) == expected);
+      int next = 0;
+      const auto rows = jpeg::encode_rows(
+          39, 45, format,
+          [&](int y, std::span<uint8_t> row) {
+            REQUIRE(y == next++);
+            std::memcpy(row.data(), bytes.data() + y * stride, row.size());
+            return true;
+          },
+          options);
+      REQUIRE(*rows == expected);
+      REQUIRE(next == 45);
+    }
+  }
+}
+
+TEST_CASE("bottom-up pixels encode as the picture turned over") {
+  const RgbImage image = test_image(20, 12);
+  RgbImage turned(20, 12);
+  for (int y = 0; y < 12; ++y) std::memcpy(turned.row(y), image.row(11 - y), 60);
+  const auto bytes = converted(image, PixelFormat::bgra, 80);
+  CHECK(*jpeg::encode_pixels({bytes.data() + 11 * 80, 20, 12, -80, PixelFormat::bgra}) == *jpeg::encode(turned.view()));
+}
+
+TEST_CASE("gray pixels and gray rows encode as a gray image") {
+  GrayImage gray(31, 18);
+  for (int y = 0; y < 18; ++y)
+    for (int x = 0; x < 31; ++x) gray.row(y)[x] = static_cast<uint8_t>(5 * x + 3 * y);
+  const auto expected = *jpeg::encode_gray(gray.view());
+  CHECK(*jpeg::encode_pixels({gray.row(0), 31, 18, gray.stride(), PixelFormat::gray}) == expected);
+  CHECK(*jpeg::encode_rows(31, 18, PixelFormat::gray, [&](int y, std::span<uint8_t> row) {
+    std::memcpy(row.data(), gray.row(y), row.size());
+    return true;
+  }) == expected);
+}
+
+TEST_CASE("a receiver gets the file in pieces; one that refuses, or a source without rows, ends encoding") {
+  const RgbImage image = test_image(200, 160);
+  const auto source = [&](int y, std::span<uint8_t> row) {
+    std::memcpy(row.data(), image.row(y), row.size());
+    return true;
+  };
+  jpeg::EncodeOptions options;
+  options.quality = 95;
+  options.huffman = jpeg::Huffman::standard;
+  std::vector<uint8_t> file;
+  int pieces = 0;
+  const auto size = jpeg::encode_rows(
+      200, 160, PixelFormat::rgb, source,
+      [&](std::span<const uint8_t> bytes) {
+        file.insert(file.end(), bytes.begin(), bytes.end());
+        return ++pieces > 0;
+      },
+      options);
+  REQUIRE(size.ok());
+  CHECK(*size == file.size());
+  CHECK(pieces > 1);
+  CHECK(file == *jpeg::encode(image.view(), options));
+
+  const auto refused = jpeg::encode_rows(
+      200, 160, PixelFormat::rgb, source, [](std::span<const uint8_t>) { return false; }, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().error == Error::out_of_space);
+  const auto starved = jpeg::encode_rows(
+      200, 160, PixelFormat::rgb, [](int y, std::span<uint8_t>) { return y < 100; }, options);
+  REQUIRE_FALSE(starved.ok());
+  CHECK(starved.failure().error == Error::bad_argument);
+}
+
+PlaneView<const uint8_t> view_of(const jpeg::SamplePlane& plane) {
+  return {plane.samples.data(), plane.width, plane.height, plane.width};
+}
+
+TEST_CASE("planes that were decoded encode again without a change of size or color, in any sampling") {
+  const RgbImage image = test_image(53, 38);
+  const jpeg::SamplingFactors kinds[] = {
+      {}, {{2, 1, 1}, {2, 1, 1}}, {{4, 1, 1}, {1, 1, 1}}, {{1, 2, 1}, {1, 2, 1}}, {{3, 2, 1}, {1, 1, 2}}};
+  for (const auto& sampling : kinds) {
+    jpeg::EncodeOptions options;
+    options.quality = 100;
+    options.sampling = sampling;
+    const auto first = jpeg::decode_planes(*jpeg::encode(image.view(), options));
+    REQUIRE(first.ok());
+    const jpeg::YccPlanes planes{53, 38, view_of(first->planes[0]), view_of(first->planes[1]),
+                                 view_of(first->planes[2])};
+    const auto file = jpeg::encode_planes(planes, options);
+    REQUIRE(file.ok());
+    const auto second = jpeg::decode_planes(*file);
+    for (size_t c = 0; c < 3; ++c) {
+      REQUIRE(second->planes[c].width == first->planes[c].width);
+      int worst = 0;
+      for (size_t i = 0; i < first->planes[c].samples.size(); ++i)
+        worst = std::max(worst, std::abs(first->planes[c].samples[i] - second->planes[c].samples[i]));
+      REQUIRE(worst <= 2);
+    }
+    jpeg::YccPlanes wrong = planes;
+    wrong.cb.width += 1;
+    CHECK(jpeg::encode_planes(wrong, options).failure().error == Error::bad_argument);
+  }
 }
 
 TEST_CASE("damaged files: a failure strictly, rows and a report leniently") {

@@ -23,6 +23,7 @@ int run_render(Args args);
 int run_compare(Args args);
 int run_jpeg_encode(Args args);
 int run_jpeg_decode(Args args);
+int run_jpeg_transcode(Args args);
 int run_jpeg_info(Args args);
 int run_mpeg1_encode(Args args);
 int run_mpeg1_decode(Args args);

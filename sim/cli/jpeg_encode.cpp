@@ -1,7 +1,9 @@
 // `pac jpeg encode`.
 #include <cstdio>
+#include <optional>
 
 #include "jpeg/jpeg.h"
+#include "jpeg/metadata.h"
 #include "sim/cli/command.h"
 #include "sim/cli/image_files.h"
 #include "sim/cli/jpeg_tables.h"
@@ -10,9 +12,9 @@ namespace pac::cli {
 namespace {
 
 struct Request {
-  std::string in, out, tables;
+  std::string in, out, tables, sampling, metadata_from, comment;
   double quality = 75;
-  int target_bytes = 0, restart = 0;
+  int target_bytes = 0, restart = 0, dots_per_inch = 0;
   jpeg::Effort effort = jpeg::Effort::normal;
   jpeg::Tune tune = jpeg::Tune::visual;
   jpeg::Huffman huffman = jpeg::Huffman::optimal;
@@ -46,6 +48,12 @@ void declare(Options& options, Request& request) {
   options.text("--tables", "annex-k|adapted|FILE", request.tables,
                "instead of --effort's; FILE: 64 or 128 numbers, luma first, row order, which -q scales where given");
   options.integer("--restart", "MCUS", request.restart, 0, 65535, "restart interval (0 = none)");
+  options.text("--sampling", "HxV,HxV,HxV", request.sampling,
+               "sampling factors of Y, Cb and Cr, 1 to 4 each, instead of --subsampling: 4x1,1x1,1x1 is 4:1:1");
+  options.text("--metadata-from", "FILE.jpg", request.metadata_from,
+               "take over profile, Exif, XMP, comments and density");
+  options.text("--comment", "TEXT", request.comment, "add a comment");
+  options.integer("--dpi", "N", request.dots_per_inch, 1, 65535, "dots per inch");
   options.integer("--target-bytes", "N", request.target_bytes, 1, 2147483647, "the finest quality whose file fits");
 }
 
@@ -59,12 +67,46 @@ int read_own_tables(const Options& options, const Request& request, jpeg::Encode
   return kDone;
 }
 
+// "2x2,1x1,1x1".
+std::optional<jpeg::SamplingFactors> parse_sampling(const std::string& text) {
+  int h[3] = {}, v[3] = {};
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%1dx%1d,%1dx%1d,%1dx%1d%c", &h[0], &v[0], &h[1], &v[1], &h[2], &v[2], &rest) != 6)
+    return {};
+  jpeg::SamplingFactors factors;
+  int n_blocks = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    if (h[i] < 1 || h[i] > 4 || v[i] < 1 || v[i] > 4) return {};
+    factors.h[i] = static_cast<uint8_t>(h[i]);
+    factors.v[i] = static_cast<uint8_t>(v[i]);
+    n_blocks += h[i] * v[i];
+  }
+  if (n_blocks > 10) return {};
+  return factors;
+}
+
+// What the options say beside the picture. kDone, or kBadData after the message.
+int make_metadata(const Request& request, jpeg::Metadata& metadata) {
+  if (!request.metadata_from.empty()) {
+    const auto bytes = read_file(request.metadata_from);
+    if (!bytes.ok()) return data_error(request.metadata_from, bytes.failure());
+    auto found = jpeg::read_metadata(*bytes);
+    if (!found.ok()) return data_error(request.metadata_from, found.failure());
+    metadata = std::move(found->metadata);
+  }
+  if (!request.comment.empty()) metadata.comments.push_back(request.comment);
+  if (request.dots_per_inch > 0)
+    metadata.density = {jpeg::Density::Unit::per_inch, request.dots_per_inch, request.dots_per_inch};
+  return kDone;
+}
+
 int make_encode_options(const Options& options, const Request& request, jpeg::EncodeOptions& encode) {
   encode = jpeg::options_for(request.effort, request.tune, request.quality);
   encode.subsampling = request.subsampling;
   encode.restart_interval_mcus = request.restart;
   encode.threads = options.threads;
   encode.isa = options.isa;
+  if (options.given("--sampling")) encode.sampling = parse_sampling(request.sampling);
   if (options.given("--huffman")) encode.huffman = request.huffman;
   if (request.tables.empty()) return kDone;
   if (request.tables == "annex-k") {
@@ -123,9 +165,14 @@ int run_jpeg_encode(Args args) {
   if (const auto exit = options.parse(args)) return *exit;
   if (options.given("--target-bytes") && options.given("--quality"))
     return options.usage_error("--target-bytes chooses the quality itself: leave -q out");
+  if (options.given("--sampling") && !parse_sampling(request.sampling))
+    return options.usage_error("--sampling is three factors HxV of 1..4 with at most 10 blocks in all: 2x2,1x1,1x1");
   if (options.json && request.out == "-") return options.usage_error("--json and -o - both want stdout");
   jpeg::EncodeOptions encode;
   if (const int exit = make_encode_options(options, request, encode); exit != kDone) return exit;
+  jpeg::Metadata metadata;
+  if (const int exit = make_metadata(request, metadata); exit != kDone) return exit;
+  encode.metadata = &metadata;
   const auto image = read_picture(request.in, options.isa);
   if (!image) return kBadData;
   const auto file = code(request, image->view(), encode);

@@ -23,6 +23,7 @@ constexpr Command kCommands[] = {
     {"sweep", "rate-distortion curves over scenes, splits, codecs and rates", run_sweep},
     {"jpeg encode", "writes a baseline JPEG file", run_jpeg_encode},
     {"jpeg decode", "writes a JPEG file's picture as PNG, PPM or PGM", run_jpeg_decode},
+    {"jpeg transcode", "writes a JPEG file again as baseline, losslessly", run_jpeg_transcode},
     {"jpeg info", "markers, frame, tables, estimated quality, metadata", run_jpeg_info},
     {"mpeg1 encode", "codes a Y4M clip as MPEG-1 video", run_mpeg1_encode},
     {"mpeg1 decode", "writes MPEG-1 video as Y4M", run_mpeg1_decode},
