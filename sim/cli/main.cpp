@@ -47,7 +47,7 @@ void print_commands(std::FILE* out, const std::string& group) {
   std::fprintf(out, "usage: pac %s%sCOMMAND [arguments]\n\n", group.c_str(), group.empty() ? "" : " ");
   for (const Command& command : kCommands)
     if (group.empty() || std::string_view(command.name).starts_with(group + " "))
-      std::fprintf(out, "  %-14s %s\n", command.name, command.summary);
+      std::fprintf(out, "  %-16s %s\n", command.name, command.summary);
   std::fprintf(out, "\n'pac COMMAND --help' lists options with an example.\n");
 }
 
