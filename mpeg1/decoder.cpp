@@ -72,7 +72,7 @@ struct Decoder::State {
 
   bool has_sequence = false;
   SequenceHeader sequence;
-  ScaledMatrices intra, non_intra;
+  Dequantizer intra, non_intra;
   bool group_is_closed = false, group_is_broken = false;
   int pictures_since_group = 0;
 
@@ -115,10 +115,12 @@ Result<void> Decoder::State::take_sequence(std::span<const uint8_t> payload) {
     if (waits_for_output) deliver(references[1]);
     forget_pictures();
   }
+  if (!has_sequence || parsed->intra_matrix != sequence.intra_matrix)
+    make_dequantizer(parsed->intra_matrix, true, intra);
+  if (!has_sequence || parsed->non_intra_matrix != sequence.non_intra_matrix)
+    make_dequantizer(parsed->non_intra_matrix, false, non_intra);
   sequence = *parsed;
   has_sequence = true;
-  scale_matrix(sequence.intra_matrix, intra);
-  scale_matrix(sequence.non_intra_matrix, non_intra);
   return {};
 }
 

@@ -1,7 +1,7 @@
 #include "mpeg1/slice_reader.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <bit>
 #include <cstring>
 
 #include "base/kernels/block_kernels.h"
@@ -27,11 +27,96 @@ void clear_blocks(int16_t* coefficients, size_t n_blocks) {
   for (size_t i = 0; i < n_blocks; ++i) std::memset(coefficients + 64 * i, 0, 128);
 }
 
+// The odd value next to `value` toward zero, clipped [2.4.4.1]; sign: -1 or 0. 0 stays 0.
+inline int finish_value(int value, int sign) {
+  const int odd = std::max((value - 1) | 1, 0);
+  return (std::min(odd, 2047 - sign) ^ sign) - sign;
+}
+
+// A level at a zigzag position becomes a coefficient.
+struct IntraByPosition {
+  const uint16_t* scaled;
+  int operator()(int level, int position) const {
+    const int sign = level >> 31;
+    return finish_value(((level ^ sign) - sign) * scaled[position] >> 3, sign);
+  }
+};
+struct NonIntraByPosition {
+  const uint16_t* scaled;
+  int operator()(int level, int position) const {
+    const int sign = level >> 31;
+    return finish_value((2 * ((level ^ sign) - sign) + 1) * scaled[position] >> 4, sign);
+  }
+};
+struct NonIntraByLevel {
+  const int16_t* values;  // of level 0
+  int operator()(int level, int) const { return values[level]; }
+};
+
+// The level of an escape [table B.5g]: 8 bits, or 16. Zero where it is forbidden.
+inline int read_escape_level(UnitReader& bits) {
+  const int first = static_cast<int8_t>(bits.peek(8));
+  bits.skip(8);
+  if ((first & 127) != 0) return first;
+  const int second = static_cast<int>(bits.peek(8));
+  bits.skip(8);
+  if (first == 0) return second >= 128 ? second : 0;
+  return second <= 128 ? second == 0 ? 0 : second - 256 : 0;
+}
+
+constexpr int kInvalidCode = -1, kInvalidLevel = -2, kPastTheBlock = -3;  // results of read_coefficients
+const char* text_of(int result) {
+  return result == kInvalidCode    ? "invalid dct_coeff"
+         : result == kInvalidLevel ? "forbidden escape level"
+                                   : "coefficient after the 64th";
+}
+
+// Coefficients after zigzag `position` until the end of the block [2.4.2.8, 2.4.4.1], of which at least 28 bits are in
+// the window: the position of the last one, or a negative result.
+template <class Dequantize>
+inline __attribute__((always_inline)) int read_coefficients(UnitReader& bits, const Dequantize& dequantize,
+                                                            int position, int16_t* coefficients) {
+  for (;;) {
+    const CoefficientSymbol* symbol = &kReading.coefficient_short[bits.peek(kShortBits)];
+    if (symbol->advance == kAdvanceNone) [[unlikely]]
+      symbol = &kReading.coefficient_long[bits.peek(kLongBits) & ((1 << (kLongBits - kLongPrefix)) - 1)];
+    bits.skip(symbol->length);
+    const int before = position;
+    position += symbol->advance;
+    int level = symbol->level;
+    if (position > 63) {
+      if (symbol->advance == kAdvanceEndOfBlock) return before;
+      if (symbol->advance == kAdvanceNone) return kInvalidCode;
+      if (symbol->advance != kAdvanceEscape) return kPastTheBlock;
+      position = before + static_cast<int>(bits.peek(6)) + 1;
+      bits.skip(6);
+      level = read_escape_level(bits);
+      if (level == 0) return kInvalidLevel;
+      if (position > 63) return kPastTheBlock;
+    }
+    coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>(dequantize(level, position));
+    if (bits.available() < 28) bits.refill();
+  }
+}
+
 }  // namespace
 
-void scale_matrix(const QuantizerMatrix& matrix, ScaledMatrices& scaled) {
-  for (size_t q = 0; q < scaled.size(); ++q)
-    for (size_t k = 0; k < 64; ++k) scaled[q][k] = static_cast<uint16_t>(q * matrix[kNaturalFromZigzag[k]]);
+void make_dequantizer(const QuantizerMatrix& matrix, bool is_intra, Dequantizer& dequantizer) {
+  for (size_t q = 0; q < 32; ++q)
+    for (size_t k = 0; k < 64; ++k) dequantizer.scaled[q][k] = static_cast<uint16_t>(q * matrix[kNaturalFromZigzag[k]]);
+  dequantizer.is_flat = !is_intra && std::count(matrix.begin(), matrix.end(), matrix[0]) == 64;
+  if (!dequantizer.is_flat) return;
+  for (size_t q = 1; q < 32; ++q)
+    for (int level = -255; level < 256; ++level)
+      dequantizer.values[q][level + 256] =
+          static_cast<int16_t>(level == 0 ? 0 : NonIntraByPosition{dequantizer.scaled[q]}(level, 0));
+}
+
+SliceReader::SliceReader(const PictureContext& picture) : picture_(picture) {
+  for (int block = 0; block < 6; ++block) {
+    strides_[block] = picture.target.stride[plane_of(block)];
+    if (block < 4) offsets_[block] = (block & 1) * 8 + (block >> 1) * 8 * strides_[block];
+  }
 }
 
 const char* SliceReader::read(std::span<const uint8_t> bytes, int row) {
@@ -140,25 +225,16 @@ void SliceReader::predict() {
     predict_macroblock(*picture_.kernels, picture_.backward, column_, row_, backward, picture_.target);
 }
 
-// Where block 0..5 of the macroblock lies.
-void SliceReader::place(int block, uint8_t*& samples, ptrdiff_t& stride) const {
-  const int plane = block < 4 ? 0 : block - 3;
-  stride = picture_.target.stride[plane];
-  samples = picture_.target.at(plane, column_, row_);
-  if (block < 4) samples += (block & 1) * 8 + (block >> 1) * 8 * stride;
-}
-
 // dct_dc_size and dct_dc_differential [2.4.3.7]: dc becomes the coefficient, 8 * level.
-bool SliceReader::read_dc(int block, int& dc) {
-  bits_.refill();
-  const Symbol symbol = block < 4 ? kReading.dc_luminance[bits_.peek(7)] : kReading.dc_chrominance[bits_.peek(8)];
+inline bool SliceReader::read_dc(UnitReader& bits, int block, int& dc) {
+  const Symbol symbol = block < 4 ? kReading.dc_luminance[bits.peek(7)] : kReading.dc_chrominance[bits.peek(8)];
   if (symbol.length == 0) return fail("invalid dct_dc_size");
-  bits_.skip(symbol.length);
-  int& prediction = dc_[block < 4 ? 0 : block - 3];
+  bits.skip(symbol.length);
+  int& prediction = dc_[plane_of(block)];
   if (symbol.value != 0) {
     const int size = symbol.value;
-    int differential = static_cast<int>(bits_.peek(size));
-    bits_.skip(size);
+    int differential = static_cast<int>(bits.peek(size));
+    bits.skip(size);
     if (differential >> (size - 1) == 0) differential += 1 - (1 << size);
     prediction += 8 * differential;
   }
@@ -167,110 +243,75 @@ bool SliceReader::read_dc(int block, int& dc) {
   return true;
 }
 
-// Coefficients after zigzag `position` until the end of the block [2.4.2.8, 2.4.4.1]: the position of the last one, or
-// -1 where the block is wrong.
-template <bool kIsIntra>
-int SliceReader::read_coefficients(const uint16_t* scaled, int position, int16_t* coefficients) {
-  UnitReader bits = bits_;  // a copy in registers
-  const auto store = [&](int level) {
-    const int magnitude = std::abs(level);
-    const int weight = scaled[position];
-    int value = kIsIntra ? magnitude * weight >> 3 : (2 * magnitude + 1) * weight >> 4;
-    const int is_nonzero = value != 0;
-    value = (value - is_nonzero) | is_nonzero;  // even values move toward zero
-    const int sign = level >> 31;               // -1 or 0
-    value = std::min(value, 2047 - sign);
-    coefficients[kNaturalFromZigzag[position]] = static_cast<int16_t>((value ^ sign) - sign);
-  };
-  bits.refill();
-  if (!kIsIntra && bits.peek(1) != 0) {  // dct_coeff_first: '1s' is run 0, level 1
-    position = 0;
-    store(bits.peek(2) == 2 ? 1 : -1);
-    bits.skip(2);
-  }
-  for (;;) {
-    if (bits.available() < 28) bits.refill();
-    CoefficientSymbol symbol = kReading.coefficient_short[bits.peek(kShortBits)];
-    if (symbol.length == 0) symbol = kReading.coefficient_long[bits.peek(kLongBits) & ((1 << 11) - 1)];
-    if (symbol.run < kRunEndOfBlock) {
-      if (symbol.length == 0) return fail("invalid dct_coeff"), -1;
-      bits.skip(symbol.length);
-      position += symbol.run + 1;
-      if (position > 63) return fail("coefficient after the 64th"), -1;
-      store(symbol.level);
-      continue;
-    }
-    if (symbol.run == kRunEndOfBlock) {
-      bits.skip(2);
-      bits_ = bits;
-      return position;
-    }
-    position += static_cast<int>(bits.peek(12) & 63) + 1;
-    bits.skip(12);
-    int level = static_cast<int>(bits.peek(8));
-    bits.skip(8);
-    if (level == 0 || level == 128) {
-      const int low = static_cast<int>(bits.peek(8));
-      bits.skip(8);
-      if (low == 0 || (level == 0 && low < 128) || (level == 128 && low > 128))
-        return fail("forbidden escape level"), -1;
-      level = level == 0 ? low : low - 256;
-    } else if (level > 128) {
-      level -= 256;
-    }
-    if (position > 63) return fail("coefficient after the 64th"), -1;
-    store(level);
-  }
-}
-
 bool SliceReader::read_intra_blocks() {
-  const uint16_t* scaled = (*picture_.intra)[static_cast<size_t>(quantizer_)].data();
+  const IntraByPosition dequantize{picture_.intra->scaled[quantizer_]};
   const bool is_d = picture_.header.type == PictureType::D;
-  pending_.count = 0;
+  UnitReader bits = bits_;  // a copy in registers
+  size_t n = 0;
   bool good = true;
   for (int block = 0; block < 6 && good; ++block) {
     int dc = 0;
-    if (!(good = read_dc(block, dc))) break;
-    uint8_t*& samples = pending_.samples[pending_.count];
-    ptrdiff_t& stride = pending_.strides[pending_.count];
-    place(block, samples, stride);
-    int16_t* coefficients = pending_.coefficients + 64 * pending_.count;
-    const int last = is_d ? 0 : read_coefficients<true>(scaled, 0, coefficients);
+    bits.refill();  // 56 bits: 8 and 8 of DC, 28 of the first coefficient
+    good = read_dc(bits, block, dc);
+    if (!good) break;
+    uint8_t* samples = samples_of(block);
+    int16_t* coefficients = pending_.coefficients + 64 * n;
+    const int last = is_d ? 0 : read_coefficients(bits, dequantize, 0, coefficients);
     if (last == 0) {
-      fill_block((dc + 4) >> 3, samples, stride);
+      fill_block((dc + 4) >> 3, samples, strides_[block]);
       continue;
     }
     coefficients[0] = static_cast<int16_t>(dc);
-    ++pending_.count;
-    good = last > 0;
+    pending_.samples[n] = samples;
+    pending_.strides[n++] = strides_[block];
+    good = last > 0 || fail(text_of(last));
   }
-  if (good) picture_.kernels->idct_put(pending_.coefficients, pending_.count, pending_.samples, pending_.strides);
-  clear_blocks(pending_.coefficients, pending_.count);
+  bits_ = bits;
+  if (good) picture_.kernels->idct_put(pending_.coefficients, n, pending_.samples, pending_.strides);
+  clear_blocks(pending_.coefficients, n);
   return good;
 }
 
-bool SliceReader::read_coded_blocks(int pattern) {
-  const uint16_t* scaled = (*picture_.non_intra)[static_cast<size_t>(quantizer_)].data();
-  pending_.count = 0;
-  bool good = true;
-  for (int block = 0; block < 6 && good; ++block) {
-    if ((pattern & 32 >> block) == 0) continue;
-    uint8_t*& samples = pending_.samples[pending_.count];
-    ptrdiff_t& stride = pending_.strides[pending_.count];
-    place(block, samples, stride);
-    int16_t* coefficients = pending_.coefficients + 64 * pending_.count;
-    const int last = read_coefficients<false>(scaled, -1, coefficients);
-    if (last == 0) {
-      picture_.kernels->idct_dc_add(coefficients[0], samples, stride);
+template <class Dequantize>
+bool SliceReader::read_coded_blocks(int pattern, const Dequantize& dequantize) {
+  UnitReader bits = bits_;  // a copy in registers
+  size_t n = 0;
+  int result = 0;
+  for (unsigned left = static_cast<unsigned>(pattern) << 26; left != 0 && result >= 0;) {
+    const int block = std::countl_zero(left);  // bit 5 of the pattern is the first block
+    left &= ~(1u << (31 - block));
+    int16_t* coefficients = pending_.coefficients + 64 * n;
+    bits.refill();
+    int position = -1;
+    if (bits.peek(1) != 0) {  // dct_coeff_first: '1s' is run 0, level 1
+      position = 0;
+      coefficients[0] = static_cast<int16_t>(dequantize(bits.peek(2) == 2 ? 1 : -1, 0));
+      bits.skip(2);
+    }
+    result = read_coefficients(bits, dequantize, position, coefficients);
+    if (result == 0) {
+      picture_.kernels->idct_dc_add(coefficients[0], samples_of(block), strides_[block]);
       coefficients[0] = 0;
       continue;
     }
-    ++pending_.count;
-    good = last > 0 || (error_ == nullptr && fail("coded block without coefficients"));
+    pending_.samples[n] = samples_of(block);
+    pending_.strides[n++] = strides_[block];
   }
-  if (good) picture_.kernels->idct_add(pending_.coefficients, pending_.count, pending_.samples, pending_.strides);
-  clear_blocks(pending_.coefficients, pending_.count);
-  return good;
+  bits_ = bits;
+  if (result < 0) fail(text_of(result));
+  if (result >= 0) picture_.kernels->idct_add(pending_.coefficients, n, pending_.samples, pending_.strides);
+  clear_blocks(pending_.coefficients, n);
+  return result >= 0;
+}
+
+// Mostly the next macroblock of the row: no division then.
+void SliceReader::move_to(int address) {
+  if (address == address_ + 1 && column_ + 1 < picture_.columns && flags_ != 0) {
+    ++column_;
+  } else {
+    row_ = address / picture_.columns, column_ = address % picture_.columns;
+  }
+  address_ = address;
 }
 
 bool SliceReader::read_macroblock() {
@@ -278,8 +319,7 @@ bool SliceReader::read_macroblock() {
   if (!read_address(address)) return false;
   const bool is_first = flags_ == 0;  // the increment of a slice's first macroblock only says where it is
   if (address > address_ + 1 && !is_first && !skip_macroblocks(address_ + 1, address)) return false;
-  address_ = address;
-  row_ = address / picture_.columns, column_ = address % picture_.columns;
+  move_to(address);
 
   bits_.refill();
   const Symbol type = kReading.macroblock_type[static_cast<size_t>(picture_.header.type)][bits_.peek(6)];
@@ -301,7 +341,9 @@ bool SliceReader::read_macroblock() {
   const Symbol pattern = kReading.pattern[bits_.peek(9)];
   if (pattern.length == 0) return fail("invalid coded_block_pattern");
   bits_.skip(pattern.length);
-  return read_coded_blocks(pattern.value);
+  const Dequantizer& matrix = *picture_.non_intra;
+  if (matrix.is_flat) return read_coded_blocks(pattern.value, NonIntraByLevel{matrix.values[quantizer_] + 256});
+  return read_coded_blocks(pattern.value, NonIntraByPosition{matrix.scaled[quantizer_]});
 }
 
 }  // namespace pac::mpeg1

@@ -13,9 +13,13 @@
 
 namespace pac::mpeg1 {
 
-// quantizer_scale times the matrix, in zigzag order, for each scale 1..31.
-using ScaledMatrices = std::array<std::array<uint16_t, 64>, 32>;
-void scale_matrix(const QuantizerMatrix& matrix, ScaledMatrices& scaled);
+// One matrix for reading: what levels become [2.4.4.1].
+struct Dequantizer {
+  uint16_t scaled[32][64] = {};  // quantizer_scale times the matrix, zigzag order, for each scale 1..31
+  bool is_flat = false;          // non-intra, all entries equal: the value depends on the level alone
+  int16_t values[32][512] = {};  // then, of level -255..255 at [256 + level]
+};
+void make_dequantizer(const QuantizerMatrix& matrix, bool is_intra, Dequantizer& dequantizer);
 
 // What all slices of a picture share. `covered` has a byte a macroblock: 1 once reconstructed.
 struct PictureContext {
@@ -23,15 +27,15 @@ struct PictureContext {
   PictureHeader header;
   int columns = 0, rows = 0;  // macroblocks
   Planes target, forward, backward;
-  const ScaledMatrices* intra = nullptr;
-  const ScaledMatrices* non_intra = nullptr;
+  const Dequantizer* intra = nullptr;
+  const Dequantizer* non_intra = nullptr;
   std::vector<uint8_t>* covered = nullptr;
 };
 
 // Reconstructs the macroblocks of one slice.
 class SliceReader {
  public:
-  explicit SliceReader(const PictureContext& picture) : picture_(picture) {}
+  explicit SliceReader(const PictureContext& picture);
 
   // `bytes` begin after the slice start code and end before the next start code; row = slice_vertical_position - 1,
   // inside the picture. Null, or what is wrong: the macroblocks before it stand.
@@ -46,7 +50,6 @@ class SliceReader {
     alignas(64) int16_t coefficients[6 * 64];
     uint8_t* samples[6];
     ptrdiff_t strides[6];
-    size_t count = 0;
   };
 
   bool fail(const char* text) {
@@ -60,17 +63,20 @@ class SliceReader {
   bool read_vector(int direction, bool full_pel, int f_code);
   bool read_component(int r_size, int16_t& component);
   bool read_vectors(uint8_t flags);
-  bool read_dc(int block, int& dc);
-  template <bool kIsIntra>
-  int read_coefficients(const uint16_t* scaled, int position, int16_t* coefficients);
+  bool read_dc(UnitReader& bits, int block, int& dc);
   bool read_intra_blocks();
-  bool read_coded_blocks(int pattern);
+  template <class Dequantize>
+  bool read_coded_blocks(int pattern, const Dequantize& dequantize);
   void predict();
   void reset_dc() { dc_[0] = dc_[1] = dc_[2] = 1024; }
   void reset_vectors() { vectors_[0] = vectors_[1] = {}; }
-  void place(int block, uint8_t*& samples, ptrdiff_t& stride) const;
+  void move_to(int address);
+  // Where block 0..5 of the macroblock lies.
+  uint8_t* samples_of(int block) const { return picture_.target.at(plane_of(block), column_, row_) + offsets_[block]; }
+  static int plane_of(int block) { return block < 4 ? 0 : block - 3; }
 
   const PictureContext& picture_;
+  ptrdiff_t offsets_[6] = {}, strides_[6] = {};  // of each block: from its macroblock's first sample of the plane
   UnitReader bits_;
   const char* error_ = nullptr;
   int address_ = 0, column_ = 0, row_ = 0;

@@ -113,6 +113,8 @@ constexpr void enter_coefficient(ReadingTables& tables, uint32_t code, int lengt
 
 constexpr ReadingTables make_reading_tables() {
   ReadingTables tables{};
+  tables.coefficient_short.fill({0, kAdvanceNone, 0});
+  tables.coefficient_long.fill({0, kAdvanceNone, 0});
   for (size_t i = 1; i < kAddressIncrementCodes.size(); ++i)
     enter(tables.address_increment, 11, kAddressIncrementCodes[i], static_cast<int>(i));
   for (const MacroblockType& type : kTypesOfI) enter(tables.macroblock_type[1], 6, type.code, type.flags);
@@ -135,10 +137,10 @@ constexpr ReadingTables make_reading_tables() {
   for (const RunLevelCode& entry : kRunLevelCodes)
     for (const int sign : {0, 1})
       enter_coefficient(tables, static_cast<uint32_t>(entry.code.bits << 1 | sign), entry.code.length + 1,
-                        {static_cast<int8_t>(entry.run), static_cast<int8_t>(entry.code.length + 1),
+                        {static_cast<uint8_t>(entry.code.length + 1), static_cast<uint8_t>(entry.run + 1),
                          static_cast<int16_t>(sign != 0 ? -entry.level : entry.level)});
-  enter_coefficient(tables, kEndOfBlock.bits, kEndOfBlock.length, {kRunEndOfBlock, 2, 0});
-  enter_coefficient(tables, kEscapeCode.bits, kEscapeCode.length, {kRunEscape, 6, 0});
+  enter_coefficient(tables, kEndOfBlock.bits, kEndOfBlock.length, {kEndOfBlock.length, kAdvanceEndOfBlock, 0});
+  enter_coefficient(tables, kEscapeCode.bits, kEscapeCode.length, {kEscapeCode.length, kAdvanceEscape, 0});
   return tables;
 }
 

@@ -52,12 +52,15 @@ constexpr int kMaxTableRun = 31, kMaxTableLevel = 40;
 struct Symbol {
   uint8_t value = 0, length = 0;
 };
+// dct_coeff_next with its sign. `advance` is run + 1, or one of the below, which lead any position beyond the 64th: one
+// comparison finds them all.
 struct CoefficientSymbol {
-  int8_t run = 0;     // 0..31, or one of the below
-  int8_t length = 0;  // with the sign bit; 0: no code begins so
-  int16_t level = 0;  // signed
+  uint8_t length = 0;   // with the sign bit; of an escape: without what follows
+  uint8_t advance = 0;  // 1..32, or one of the below; never 0
+  int16_t level = 0;    // signed
 };
-constexpr int8_t kRunEndOfBlock = 64, kRunEscape = 65;
+constexpr uint8_t kAdvanceNone = 65;  // no code begins so; in the first table: perhaps in the second
+constexpr uint8_t kAdvanceEndOfBlock = 66, kAdvanceEscape = 67;
 constexpr int kShortBits = 9, kLongBits = 17;  // first table; longest code with sign
 constexpr int kLongPrefix = 6;                 // all longer codes begin with so many zeros
 

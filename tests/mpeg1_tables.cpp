@@ -51,7 +51,7 @@ TEST_CASE("each coefficient code reads back as its run and level, with either si
                             << (kLongBits - entry.code.length - 1);
       CoefficientSymbol symbol = kReading.coefficient_short[bits >> (kLongBits - kShortBits)];
       if (symbol.length == 0) symbol = kReading.coefficient_long[bits];
-      CHECK(symbol.run == entry.run);
+      CHECK(symbol.advance == entry.run + 1);
       CHECK(symbol.level == (sign != 0 ? -entry.level : entry.level));
       CHECK(symbol.length == entry.code.length + 1);
     }
