@@ -24,6 +24,14 @@ constexpr double kFastIntraRounding = 0.375;  // of a step: the trellis rounds t
 // step (2 quantizer_scale) give 0.46; blocks of few levels want more.
 constexpr double kLambda = 0.85;
 
+// I pictures: what quantizer_scale is multiplied by where the macroblock moves and where it stays, how much of it is
+// expected to stay before anything was seen, and what lambda is multiplied by.
+constexpr double kMovingIntraScale = 0.7, kStillIntraScale = 0.5, kUnknownStillness = 0.3, kIntraLambda = 0.7;
+
+double mix(double a, double b, double share) {
+  return a + (b - a) * share;
+}
+
 bool is_valid(const std::optional<QuantizerMatrix>& matrix) {
   if (!matrix) return true;
   return std::all_of(matrix->begin(), matrix->end(), [](uint8_t entry) { return entry >= kMinMatrixEntry; });
@@ -53,7 +61,10 @@ struct Encoder::State {
   const char* problem_with_picture(const Frame420& frame, const PictureOptions& picture) const;
   PictureType choose_type(const PictureOptions& picture) const;
   void start_group(std::vector<uint8_t>& out);
-  double set_quantizers(const PictureOptions& picture, double scale);
+  double set_quantizers(PictureType type, const PictureOptions& picture, double scale);
+  double reuse() const;
+  double intra_scale(size_t macroblock) const;
+  void watch_stillness(PictureType type);
   PictureReport code_at(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
   PictureReport code_at_rate(PictureType type, const PictureOptions& picture, std::vector<uint8_t>& out);
   void account(const PictureReport& report, size_t before, std::vector<uint8_t>& out);
@@ -73,7 +84,7 @@ struct Encoder::State {
   int columns, rows;
   SequenceHeader sequence;
   QuantizerSet intra, non_intra;
-  int64_t lambda[32] = {};                               // of each quantizer_scale, see ResidualTask
+  int64_t lambda[2][32] = {};                            // of P and I, each quantizer_scale; see ResidualTask
   Frame420 source, reconstruction, reference, replaced;  // whole macroblocks
   Planes source_planes;                                  // of `source`, or of the caller's frame during add()
   std::vector<Macroblock> macroblocks;
@@ -87,6 +98,8 @@ struct Encoder::State {
   RateControl rate;
   size_t header_bytes = 0;      // of the sequence and group headers before the picture being coded
   std::vector<uint8_t> ages;    // codings of each macroblock since it was intra
+  std::vector<uint8_t> still;   // P pictures of the group that left each macroblock without coefficients
+  int n_watched = 0;            // P pictures that `still` counts
   std::vector<uint8_t> forced;  // must be intra
   bool in_sequence = false;     // a sequence header was written and no end
   int64_t picture_count = 0;    // of the sequence, for the time code
@@ -118,6 +131,7 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
   macroblocks.resize(count);
   last_vectors.resize(count);
   ages.resize(count);
+  still.resize(count);
   forced.resize(count);
   quantizers.resize(count);
   const int n_bands = std::max(1, rows / kRowsPerBand);
@@ -160,7 +174,9 @@ void Encoder::State::make_lambdas() {
   for (size_t k = 1; k < 16; ++k) mean += sequence.non_intra_matrix[kNaturalFromZigzag[k]] / 15.0;
   for (int q = 1; q < 32; ++q) {
     const double step = q * mean / 16;
-    lambda[q] = std::max<int64_t>(1, static_cast<int64_t>(kDistortionScale * kLambda * step * step));
+    const double of_p = kDistortionScale * kLambda * step * step;
+    lambda[0][q] = std::max<int64_t>(1, static_cast<int64_t>(of_p));
+    lambda[1][q] = std::max<int64_t>(1, static_cast<int64_t>(of_p * mix(1, kIntraLambda, reuse())));
   }
 }
 
@@ -211,19 +227,31 @@ void Encoder::State::start_group(std::vector<uint8_t>& out) {
   temporal_reference = 0;
 }
 
-// Between integers the first part of the macroblocks has the smaller quantizer: one change of it in the stream.
-double Encoder::State::set_quantizers(const PictureOptions& picture, double scale) {
-  if (!picture.quantizer_map.empty()) {
-    std::copy(picture.quantizer_map.begin(), picture.quantizer_map.end(), quantizers.begin());
-    double sum = 0;
-    for (const uint8_t q : quantizers) sum += q;
-    return sum / static_cast<double>(quantizers.size());
+// How much of an I picture's quality the pictures after it inherit, 0..1: as measured with groups of 15.
+double Encoder::State::reuse() const {
+  return std::min(1.0, (options.gop_length - 1) / 14.0);
+}
+
+// What quantizer_scale is multiplied by in I pictures. The pictures after them repeat their quality and their errors,
+// so that a bit there is worth more, the more so the longer the macroblock stays as it is.
+double Encoder::State::intra_scale(size_t macroblock) const {
+  const double stillness = n_watched > 0 ? static_cast<double>(still[macroblock]) / n_watched : kUnknownStillness;
+  return mix(1, mix(kMovingIntraScale, kStillIntraScale, stillness), reuse());
+}
+
+// Between integers the first part of the macroblocks has the smaller quantizer: few changes of it in the stream.
+double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
+  const bool is_free = !has_rate && picture.quantizer_scale == 0;
+  double sum = 0;
+  for (size_t i = 0; i < quantizers.size(); ++i) {
+    const double wanted = type == PictureType::I && is_free ? scale * intra_scale(i) : scale;
+    const double position = (static_cast<double>(i) + 0.5) / static_cast<double>(quantizers.size());
+    quantizers[i] = static_cast<uint8_t>(std::clamp(static_cast<int>(std::floor(wanted + position)), 1, 31));
+    if (!picture.quantizer_map.empty()) quantizers[i] = picture.quantizer_map[i];
+    sum += quantizers[i];
   }
-  const double floor = std::floor(scale);
-  const auto finer = static_cast<size_t>((1 - (scale - floor)) * static_cast<double>(quantizers.size()) + 0.5);
-  for (size_t i = 0; i < quantizers.size(); ++i)
-    quantizers[i] = static_cast<uint8_t>(std::min(31, static_cast<int>(floor) + (i < finer ? 0 : 1)));
-  return scale;
+  const bool is_exact = picture.quantizer_map.empty() && (type == PictureType::P || !is_free);
+  return is_exact ? scale : sum / static_cast<double>(quantizers.size());
 }
 
 // Long before the limit of 132 codings [2.4.4.2] a macroblock's turn comes: one of kTurns pictures each.
@@ -233,6 +261,17 @@ void Encoder::State::force_intra() {
     const bool has_turn = static_cast<int64_t>(i * 7 % kTurns) == picture_count % kTurns;
     forced[i] = options.intra_refresh && (ages[i] >= kMaxGroupLength - 2 || (ages[i] >= kFirstTurn && has_turn));
   }
+}
+
+void Encoder::State::watch_stillness(PictureType type) {
+  if (type == PictureType::I) {
+    std::fill(still.begin(), still.end(), uint8_t{0});
+    n_watched = 0;
+    return;
+  }
+  ++n_watched;
+  for (size_t i = 0; i < still.size(); ++i)
+    if (macroblocks[i].kind != MacroblockKind::intra && macroblocks[i].pattern == 0) ++still[i];
 }
 
 void Encoder::State::age_macroblocks() {
@@ -247,7 +286,7 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
   task.residual.kernels = &kernels;
   task.residual.intra = &intra;
   task.residual.non_intra = &non_intra;
-  task.residual.lambda = lambda;
+  task.residual.lambda = lambda[type == PictureType::I ? 1 : 0];
   task.residual.choice = options.effort == Effort::fast ? LevelChoice::drop_small : LevelChoice::trellis;
   task.effort = options.effort;
   task.type = type;
@@ -305,13 +344,14 @@ void Encoder::State::finish_picture(PictureType type) {
   has_last_vectors = type == PictureType::P;
   for (size_t i = 0; i < macroblocks.size(); ++i) last_vectors[i] = macroblocks[i].vector;
   age_macroblocks();
+  watch_stillness(type);
   ++temporal_reference;
   ++picture_count;
 }
 
 PictureReport Encoder::State::code_at(PictureType type, const PictureOptions& picture, double scale,
                                       std::vector<uint8_t>& out) {
-  const double mean = set_quantizers(picture, scale);
+  const double mean = set_quantizers(type, picture, scale);
   code_picture(make_task(type, picture));
   const size_t before = out.size();
   PictureReport report = write_picture(type, out);

@@ -1,6 +1,7 @@
 #include "mpeg1/macroblock_coder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <utility>
 
@@ -166,12 +167,33 @@ class BandCoder {
     return error * kDistortionScale;
   }
 
+  // Leaves out the blocks that the macroblock is cheaper without: a smaller coded_block_pattern may have a longer code.
+  void choose_pattern(Attempt& attempt) const {
+    int64_t lost[64] = {};  // distortion less bits' worth, of leaving these blocks out
+    int64_t least = lambda() * kPatternCodes[attempt.pattern].length;
+    unsigned chosen = 0;
+    for (unsigned dropped = 1; dropped < attempt.pattern; ++dropped) {
+      if ((dropped & ~unsigned{attempt.pattern}) != 0) continue;
+      const BlockCost& block = attempt.costs[5 - std::countr_zero(dropped)];
+      lost[dropped] = lost[dropped & (dropped - 1)] + block.energy - block.distortion - lambda() * block.bits;
+      const int64_t cost = lost[dropped] + lambda() * kPatternCodes[attempt.pattern ^ dropped].length;
+      if (cost < least) least = cost, chosen = dropped;
+    }
+    for (unsigned left = chosen; left != 0; left &= left - 1) {
+      const BlockCost& block = attempt.costs[5 - std::countr_zero(left)];
+      attempt.distortion += block.energy - block.distortion;
+      attempt.bits -= block.bits;
+    }
+    attempt.pattern = static_cast<uint8_t>(attempt.pattern ^ chosen);
+  }
+
   // Of an inter attempt as it stands, or without its coefficients if that is cheaper.
   int64_t settle_inter(Attempt& attempt) const {
     const bool moves = attempt.vector != MotionVector{};
     const int moving_bits = moves || !may_skip() ? kBitsMotion + vector_bits(attempt.vector) : kBitsSkipped;
     const int64_t without = prediction_error(attempt) + lambda() * moving_bits;
     if (attempt.pattern == 0) return without;
+    choose_pattern(attempt);
     const int header = moves ? kBitsMotionCoded + vector_bits(attempt.vector) : kBitsCoded;
     const int bits = attempt.bits + header + kPatternCodes[attempt.pattern].length;
     const int64_t with = attempt.distortion + lambda() * bits;
@@ -236,7 +258,7 @@ class BandCoder {
     try_vector(found.vector);
     if (found.vector != MotionVector{} && (task_.effort == Effort::best || still_sad < found.sad * 2)) try_vector({});
     const MotionVector predicted = predicted_vector();
-    if (task_.effort == Effort::best && predicted != found.vector && predicted != MotionVector{} &&
+    if (predicted != found.vector && predicted != MotionVector{} &&
         vector_range(task_.reference, column_, row_, task_.f_code).contains(predicted.x_halfpel, predicted.y_halfpel))
       try_vector(predicted);
     if (task_.effort == Effort::best) refine_by_cost();

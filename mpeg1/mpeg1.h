@@ -78,9 +78,11 @@ struct SequenceOptions {
   int picture_rate_code = 5;      // 1..8: kPictureRatesMilli
   int pel_aspect_ratio_code = 1;  // 1..14 [2.4.3.2]; 1 = square
   int gop_length = 15;            // an I picture every so many pictures, 1..132; display order is coding order
-  double quantizer_scale = 4;     // 1..31 where bit_rate_bps is 0: between integers, macroblocks of both kinds
-  int64_t bit_rate_bps = 0;       // 400..104857200 (multiple of 400 after rounding up): constant bit rate with VBV
-  int vbv_buffer_size = 0;        // 1..1023 units of 16384 bits; 0: chosen
+  // 1..31 where bit_rate_bps is 0: of P pictures; between integers, macroblocks of both kinds. I pictures are quantized
+  // finer, by up to half where the group before stood still: their quality is what the others inherit.
+  double quantizer_scale = 4;
+  int64_t bit_rate_bps = 0;  // 400..104857200 (multiple of 400 after rounding up): constant bit rate with VBV
+  int vbv_buffer_size = 0;   // 1..1023 units of 16384 bits; 0: chosen
   Effort effort = Effort::normal;
   int slice_rows = 0;         // macroblock rows a slice, 0: one slice a picture
   int threads = 1;            // 0: all processors; the bytes never depend on it
@@ -104,7 +106,7 @@ struct PictureOptions {
   int candidates_per_macroblock = 0;
   // quantizer_scale of each macroblock, 1..31, raster order; empty: quantizer_scale everywhere.
   std::span<const uint8_t> quantizer_map;
-  // 1..31, for this picture; 0: the sequence's, or the rate control's.
+  // 1..31, exactly that for this picture; 0: the sequence's, or the rate control's.
   double quantizer_scale = 0;
 };
 

@@ -48,7 +48,7 @@ BlockCost choose_levels(const ResidualTask& task, const BlockToQuantize& block, 
                         uint64_t& nonzero) {
   if (nonzero == 0) {
     BlockCost nothing;
-    if (with_cost) nothing.distortion = energy(block);
+    if (with_cost) nothing.distortion = nothing.energy = energy(block);
     nothing.bits = block.is_intra ? 2 : 0;
     return nothing;
   }
@@ -141,6 +141,7 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
     block.dct = attempt.dct + 64 * i;
     const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
     if (attempt.nonzero[i] != 0) attempt.pattern = static_cast<uint8_t>(attempt.pattern | 32 >> i);
+    attempt.costs[i] = cost;
     attempt.distortion += cost.distortion;
     attempt.bits += cost.bits;
   }

@@ -8,6 +8,7 @@
 #include "mpeg1/macroblock.h"
 #include "mpeg1/predict.h"
 #include "mpeg1/quantizer.h"
+#include "mpeg1/trellis.h"
 
 namespace pac::mpeg1 {
 
@@ -30,6 +31,7 @@ struct Attempt {
   uint64_t nonzero[kBlocks] = {};            // bit k: level at zigzag position k
   int64_t distortion = 0;                    // squared error times 64, where it was asked for
   int bits = 0;                              // of the coefficients
+  BlockCost costs[kBlocks];                  // of inter, where it was asked for
   MacroblockSamples prediction;              // of inter
 };
 

@@ -93,6 +93,7 @@ BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64
     if (cost < least) least = cost, chosen = live[i];
   }
   BlockCost result;
+  result.energy = total_energy;
   result.distortion = total_energy + paths[chosen].distortion;
   result.bits = paths[chosen].bits + (chosen != 0 || block.is_intra ? end_bits : 0);
   uint64_t kept = 0;
@@ -131,7 +132,7 @@ void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& 
 
 BlockCost cost_of(const BlockToQuantize& block, const int16_t* levels, uint64_t nonzero) {
   BlockCost cost;
-  cost.distortion = energy(block);
+  cost.distortion = cost.energy = energy(block);
   int last = block.first_position - 1;
   const bool is_empty = nonzero == 0;
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {

@@ -21,6 +21,7 @@ struct BlockToQuantize {
 
 struct BlockCost {
   int64_t distortion = 0;  // of positions from first_position on
+  int64_t energy = 0;      // the distortion if nothing is coded
   int bits = 0;            // of the coefficients and end_of_block; 0 where nothing is left
 };
 
