@@ -67,6 +67,9 @@ struct Encoder::State {
   void watch_stillness(PictureType type);
   PictureReport code_at(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
   PictureReport code_at_rate(PictureType type, const PictureOptions& picture, std::vector<uint8_t>& out);
+  PictureReport code_as_told(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
+  void skip_macroblocks();
+  PictureReport skip_everything(const PictureOptions& picture, std::vector<uint8_t>& out);
   void account(const PictureReport& report, size_t before, std::vector<uint8_t>& out);
   void age_macroblocks();
   void force_intra();
@@ -197,6 +200,8 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
     if (q < 1 || q > 31) return "quantizer_map entry outside 1..31";
   if (picture.quantizer_scale != 0 && !(picture.quantizer_scale >= 1 && picture.quantizer_scale <= 31))
     return "quantizer_scale is outside 1..31";
+  if (picture.code_again != nullptr && (has_rate || !picture.quantizer_map.empty()))
+    return "code_again decides alone: no constant bit rate and no quantizer_map beside it";
   return nullptr;
 }
 
@@ -318,7 +323,7 @@ void Encoder::State::code_picture(const PictureTask& task) {
 PictureReport Encoder::State::write_picture(PictureType type, std::vector<uint8_t>& out) {
   PictureToWrite picture;
   picture.header.type = type;
-  picture.header.temporal_reference = temporal_reference;
+  picture.header.temporal_reference = temporal_reference & 1023;  // [2.4.3.4]
   picture.columns = columns;
   picture.rows = rows;
   picture.slice_rows = options.slice_rows != 0 ? std::min(options.slice_rows, rows) : rows;
@@ -358,6 +363,46 @@ PictureReport Encoder::State::code_at(PictureType type, const PictureOptions& pi
   report.quantizer_scale = mean;
   report.size_bytes = out.size() - before;
   return report;
+}
+
+// No coefficients and no motion; the ends of a slice must be coded macroblocks [2.4.4.4].
+void Encoder::State::skip_macroblocks() {
+  for (Band& band : bands) band.tokens.clear();
+  const int slice_rows = options.slice_rows != 0 ? std::min(options.slice_rows, rows) : rows;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      Macroblock& macroblock = macroblocks[static_cast<size_t>(row * columns + column)];
+      macroblock = {};
+      const bool is_first = column == 0 && row % slice_rows == 0;
+      const bool is_last = column == columns - 1 && ((row + 1) % slice_rows == 0 || row + 1 == rows);
+      if (is_first || is_last) macroblock.kind = MacroblockKind::inter;
+    }
+}
+
+PictureReport Encoder::State::skip_everything(const PictureOptions& picture, std::vector<uint8_t>& out) {
+  const size_t before = out.size();
+  skip_macroblocks();
+  set_quantizers({}, 31);
+  PictureReport report = write_picture(PictureType::P, out);
+  fill_planes(view_of(picture.reference != nullptr ? *picture.reference : reference), Planes::of(reconstruction));
+  report.quantizer_scale = 31;
+  report.size_bytes = out.size() - before;
+  return report;
+}
+
+// Codes the picture until the caller keeps it.
+PictureReport Encoder::State::code_as_told(PictureType type, const PictureOptions& picture, double scale,
+                                           std::vector<uint8_t>& out) {
+  const size_t before = out.size();
+  for (;;) {
+    const PictureReport report = code_at(type, picture, scale, out);
+    if (picture.code_again == nullptr) return report;
+    const double next = picture.code_again(picture.code_again_context, scale, report.size_bytes + header_bytes);
+    if (next == 0) return report;
+    out.resize(before);
+    if (next == kSkipEverything && type == PictureType::P) return skip_everything(picture, out);
+    scale = next == kSkipEverything ? 31 : std::clamp(next, 1.0, 31.0);
+  }
 }
 
 // Codes the picture until its size suits the rate and the decoder's buffer.
@@ -401,7 +446,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     header_bytes = out.size() - before;
     if (has_rate) rate.start_picture(type);
     const double scale = picture.quantizer_scale != 0 ? picture.quantizer_scale : options.quantizer_scale;
-    report = has_rate && free_quantizer ? code_at_rate(type, picture, out) : code_at(type, picture, scale, out);
+    report = has_rate && free_quantizer ? code_at_rate(type, picture, out) : code_as_told(type, picture, scale, out);
     const bool is_cut = type == PictureType::P && options.scene_cuts && !picture.type &&
                         report.intra_macroblocks > kCutShare * static_cast<double>(macroblocks.size());
     if (!is_cut) break;
@@ -433,16 +478,7 @@ Result<PictureReport> Encoder::repeat(std::vector<uint8_t>& out) {
   State& s = *state_;
   if (!s.in_sequence) return Failure{Error::bad_argument, 0, "there is no picture to repeat"};
   const size_t before = out.size();
-  for (Band& band : s.bands) band.tokens.clear();
-  const int slice_rows = s.options.slice_rows != 0 ? std::min(s.options.slice_rows, s.rows) : s.rows;
-  for (int row = 0; row < s.rows; ++row)
-    for (int column = 0; column < s.columns; ++column) {
-      Macroblock& macroblock = s.macroblocks[static_cast<size_t>(row * s.columns + column)];
-      macroblock = {};
-      const bool is_first = column == 0 && row % slice_rows == 0;
-      const bool is_last = column == s.columns - 1 && ((row + 1) % slice_rows == 0 || row + 1 == s.rows);
-      if (is_first || is_last) macroblock.kind = MacroblockKind::inter;
-    }
+  s.skip_macroblocks();
   s.header_bytes = 0;
   if (s.has_rate) s.rate.start_picture(PictureType::P);
   PictureReport report = s.write_picture(PictureType::P, out);

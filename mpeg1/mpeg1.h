@@ -108,7 +108,16 @@ struct PictureOptions {
   std::span<const uint8_t> quantizer_map;
   // 1..31, exactly that for this picture; 0: the sequence's, or the rate control's.
   double quantizer_scale = 0;
+  // A caller's own rate control: told the picture's quantizer_scale and size, headers included, it returns the scale
+  // 1..31 to code the picture at instead (not with a quantizer_map), kSkipEverything, or 0 to keep what was coded; it
+  // is asked again after each. Where there is no constant bit rate.
+  double (*code_again)(void* context, double quantizer_scale, uint64_t size_bytes) = nullptr;
+  void* code_again_context = nullptr;
 };
+
+// Instead of a quantizer_scale: a P picture of nothing but skipped macroblocks, which shows its reference in some 20
+// bytes and is kept. I pictures are coded at 31 instead.
+constexpr double kSkipEverything = -1;
 
 struct PictureReport {
   PictureType type = PictureType::I;

@@ -31,9 +31,12 @@ struct AnimationOptions {
   // mpeg1. The whole sequence is held in memory, some 14 bytes a pixel: its sizes are matched by a search over the
   // quantizer of D, to 1 % and never above the image-based arm's.
   double quantizer_scale = 8;  // of the image-based arm, 1..31
-  uint64_t bit_rate_bps = 0;   // > 0: both arms' quantizers are searched for this rate instead
+  // > 0: the polygon-assisted arm is coded at this bit rate, picture by picture, through a leaky bucket
+  // (sim/bit_rate.h, model prediction only); then the image-based arm's quantizer is searched for the same bytes.
+  uint64_t bit_rate_bps = 0;
+  double buffer_seconds = 1;   // of the bucket
   int frames_per_second = 20;  // 1..60: the next legal picture_rate that is not slower goes into the headers
-  AssistedVideoOptions video;  // of the polygon-assisted arm; quantizer_scale and picture_rate_code are set by the run
+  AssistedVideoOptions video;  // of the polygon-assisted arm; quantizer_scale, rate, picture_rate_code: set by the run
 };
 
 // One arm's frame.
@@ -52,8 +55,9 @@ struct Animation {
   Split split;
   int width = 0, height = 0;
   VideoArm image_based, polygon_assisted;
-  uint64_t resident_model_bytes = 0;  // the session message, once
-  uint64_t packet_bytes = 0;          // of all frame packets: code, camera, hash, CRC
+  uint64_t resident_model_bytes = 0;                  // the session message, once
+  uint64_t packet_bytes = 0;                          // of all frame packets: code, camera, hash, CRC
+  double fullest_bucket_bytes = 0, bucket_bytes = 0;  // with a bit rate: what was in it at most, what goes in
 };
 
 // One frame as it passes by; everything is valid during the call only.

@@ -17,7 +17,7 @@ class VideoAnimation {
       : options_(options), scene_(scene), video_(options.video) {
     image_.quantizer_scale = options.quantizer_scale;
     image_.picture_rate_code = video_.picture_rate_code = mpeg1::picture_rate_code(1000 * options.frames_per_second);
-    image_.group_length = video_.key_interval;
+    image_.group_length = video_.key_interval > 0 ? video_.key_interval : 132;
     image_.effort = video_.effort;
     image_.threads = options.render.threads;
     image_.isa = options.render.isa;
@@ -25,20 +25,10 @@ class VideoAnimation {
 
   // Both arms' quantizers; then the image-based arm is there to be shown.
   Result<void> choose(const std::vector<Shot>& shots) {
-    if (options_.bit_rate_bps > 0) {
-      const uint64_t target =
-          options_.bit_rate_bps * shots.size() / 8 / static_cast<uint64_t>(options_.frames_per_second);
-      PAC_TRY(image_.quantizer_scale, quantizer_for_bytes(target, 8, [&](double quantizer) -> Result<uint64_t> {
-                ImageVideoOptions pass = image_;
-                pass.quantizer_scale = quantizer;
-                PAC_TRY(const auto frames, code_image_video(shots, pass, false));
-                return total_bytes(frames);
-              }));
-      target_ = target;
-    }
+    if (options_.bit_rate_bps > 0) return choose_at_rate(shots);
     PAC_TRY(shown_, code_image_video(shots, image_, true));
-    if (target_ == 0) target_ = total_bytes(shown_);
-    PAC_TRY(video_.quantizer_scale, quantizer_for_bytes(target_, 12, [&](double quantizer) -> Result<uint64_t> {
+    const uint64_t target = total_bytes(shown_);
+    PAC_TRY(video_.quantizer_scale, quantizer_for_bytes(target, 12, [&](double quantizer) -> Result<uint64_t> {
               AssistedVideoOptions pass = video_;
               pass.quantizer_scale = quantizer;
               PAC_TRY(const auto frames, code_assisted_video(shots, scene_, pass, image_.isa, false));
@@ -51,11 +41,25 @@ class VideoAnimation {
   const VideoFrame& image_frame(size_t i) const { return shown_[i]; }
 
  private:
+  // The polygon-assisted arm as it goes; the other one, with all frames known, at its bytes.
+  Result<void> choose_at_rate(const std::vector<Shot>& shots) {
+    video_.rate = {options_.bit_rate_bps, options_.frames_per_second, options_.buffer_seconds};
+    PAC_TRY(const auto sent, code_assisted_video(shots, scene_, video_, image_.isa, false));
+    PAC_TRY(image_.quantizer_scale,
+            quantizer_for_bytes(total_bytes(sent), 8, [&](double quantizer) -> Result<uint64_t> {
+              ImageVideoOptions pass = image_;
+              pass.quantizer_scale = quantizer;
+              PAC_TRY(const auto frames, code_image_video(shots, pass, false));
+              return total_bytes(frames);
+            }));
+    PAC_TRY(shown_, code_image_video(shots, image_, true));
+    return {};
+  }
+
   const AnimationOptions& options_;
   AssistedScene scene_;
   AssistedVideoOptions video_;
   ImageVideoOptions image_;
-  uint64_t target_ = 0;
   std::vector<VideoFrame> shown_;
 };
 
@@ -87,6 +91,10 @@ Result<void> run_mpeg1(SceneSet scene, const CameraPath& path, const AnimationOp
     PAC_TRY(const Bytes packet, server.send(static_cast<uint32_t>(i), shots[i].camera, std::move(shots[i].images), 0));
     PAC_CHECK(show_frame(static_cast<int>(i), options, sink, {image.code, image.quantizer_scale, image.shown}, server,
                          client, packet, out));
+  }
+  if (options.bit_rate_bps > 0) {
+    out.bucket_bytes = server.bucket()->capacity_bytes();
+    out.fullest_bucket_bytes = server.bucket()->fullest_bytes();
   }
   return {};
 }

@@ -46,7 +46,7 @@ mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const Assist
   sequence.width = scene.width;
   sequence.height = scene.height;
   sequence.picture_rate_code = options.picture_rate_code;
-  sequence.gop_length = options.key_interval;
+  if (options.key_interval > 0) sequence.gop_length = options.key_interval;
   sequence.quantizer_scale = options.quantizer_scale;
   sequence.effort = options.effort;
   const bool is_halved = options.difference == Difference::halved;
@@ -67,7 +67,8 @@ const char* problem_with(const AssistedVideoOptions& options) {
   if (!(options.quantizer_scale >= 1 && options.quantizer_scale <= 31)) return "quantizer_scale is outside 1..31";
   if (options.key_quantizer_scale != 0 && !(options.key_quantizer_scale >= 1 && options.key_quantizer_scale <= 31))
     return "key_quantizer_scale is outside 1..31";
-  if (options.key_interval < 1 || options.key_interval > 132) return "key_interval is outside 1..132";
+  if (options.key_interval < 0 || options.key_interval > 132) return "key_interval is outside 0..132";
+  if (options.rate.is_on() && options.prediction != Prediction::model) return "a bit rate needs model prediction";
   return nullptr;
 }
 
@@ -142,7 +143,8 @@ Result<void> check(const AssistedScene& scene) {
 
 double key_quantizer_for(const AssistedVideoOptions& options) {
   if (options.key_quantizer_scale != 0) return options.key_quantizer_scale;
-  return options.prediction == Prediction::model ? std::max(1.0, options.quantizer_scale / 4) : options.quantizer_scale;
+  if (options.prediction != Prediction::model) return options.quantizer_scale;
+  return std::max(1.0, options.quantizer_scale / kKeyRatio);
 }
 
 struct AssistedEncoder::State {
@@ -150,19 +152,29 @@ struct AssistedEncoder::State {
   Isa isa;
   SharedState shared;
   mpeg1::Encoder encoder;
-  int since_key = -1;  // -1: nothing coded yet
+  int64_t since_key = -1;  // -1: nothing coded yet
   Frame420 source;
   RgbImage difference;
+  LeakyBucket bucket;
+  double last_quantizer = 0;  // of a picture between two that stand alone; 0: none yet
+
+  // Where the search of a bit rate begins.
+  double first_guess(bool is_key) const {
+    if (is_key || last_quantizer == 0) return is_key ? key_quantizer_for(options) : options.quantizer_scale;
+    return last_quantizer;
+  }
 };
 
 Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, const AssistedVideoOptions& options,
                                                 Isa isa) {
   PAC_CHECK(check(scene));
   if (const char* problem = problem_with(options)) return Failure{Error::bad_argument, 0, problem};
+  if (const char* problem = problem_with(options.rate, scene.width, scene.height))
+    return Failure{Error::bad_argument, 0, problem};
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
-  return AssistedEncoder(
-      std::make_unique<State>(State{options, isa, SharedState(scene, isa), std::move(encoder), -1,
-                                    Frame420(scene.width, scene.height), RgbImage(scene.width, scene.height)}));
+  return AssistedEncoder(std::make_unique<State>(
+      State{options, isa, SharedState(scene, isa), std::move(encoder), -1, Frame420(scene.width, scene.height),
+            RgbImage(scene.width, scene.height), LeakyBucket(options.rate), 0}));
 }
 
 AssistedEncoder::AssistedEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -170,12 +182,21 @@ AssistedEncoder::~AssistedEncoder() = default;
 AssistedEncoder::AssistedEncoder(AssistedEncoder&&) noexcept = default;
 AssistedEncoder& AssistedEncoder::operator=(AssistedEncoder&&) noexcept = default;
 
+bool AssistedEncoder::next_is_key(bool force_key) const {
+  const State& s = *state_;
+  return force_key || s.options.prediction == Prediction::none || s.since_key < 0 ||
+         (s.options.key_interval > 0 && s.since_key + 1 >= s.options.key_interval);
+}
+
+const LeakyBucket& AssistedEncoder::bucket() const {
+  return state_->bucket;
+}
+
 Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes& out, bool force_key,
                                                double quantizer_scale) {
   State& s = *state_;
   const AssistedVideoOptions& options = s.options;
-  const bool is_key =
-      force_key || options.prediction == Prediction::none || s.since_key < 0 || s.since_key + 1 >= options.key_interval;
+  const bool is_key = next_is_key(force_key);
   if (options.difference == Difference::full) {
     frame420_from_rgb(frame.high, s.source, s.isa);
   } else {
@@ -190,6 +211,12 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   AssistedVideoOptions wanted = options;
   if (quantizer_scale > 0) wanted.quantizer_scale = quantizer_scale;
   picture.quantizer_scale = is_key ? key_quantizer_for(wanted) : wanted.quantizer_scale;
+  QuantizerSearch search(s.bucket.next(), frame.overhead_bytes + 1);  // the byte before the picture
+  if (options.rate.is_on()) {
+    picture.quantizer_scale = s.first_guess(is_key);
+    picture.code_again = QuantizerSearch::code_again;
+    picture.code_again_context = &search;
+  }
 
   const size_t before = out.size();
   out.push_back(static_cast<uint8_t>((is_key ? kKey : 0) | static_cast<int>(options.prediction) << kPredictionShift |
@@ -200,7 +227,9 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   AssistedReport report;
   report.is_key = is_key;
   report.bytes = out.size() - before;
-  report.quantizer_scale = picture.quantizer_scale;
+  report.quantizer_scale = coded.quantizer_scale;
+  if (options.rate.is_on()) s.bucket.add(report.bytes + frame.overhead_bytes);
+  if (!is_key) s.last_quantizer = coded.quantizer_scale;
   report.carried_share = s.shared.carried_share();
   report.skipped_macroblocks = coded.skipped_macroblocks;
   report.coded_macroblocks = coded.coded_macroblocks;

@@ -22,6 +22,7 @@
 #include "mpeg1/mpeg1.h"
 #include "raster/renderer.h"
 #include "raster/scene.h"
+#include "sim/bit_rate.h"
 
 namespace pac::sim {
 
@@ -33,13 +34,15 @@ struct AssistedVideoOptions {
   Difference difference = Difference::full;
   double quantizer_scale = 16;     // 1..31, real-valued, of P pictures
   double key_quantizer_scale = 0;  // of pictures that stand alone; 0: key_quantizer_for(options)
-  int key_interval = 132;          // 1..132: pictures from one that stands alone to the next
+  int key_interval = 132;          // 1..132: pictures from one that stands alone to the next; 0: the first only
   int picture_rate_code = 3;       // for the headers only
   mpeg1::Effort effort = mpeg1::Effort::normal;
+  BitRate rate;  // on: every picture's quantizer is chosen for it, and the quantizers above are where the search begins
 };
 
-// Where model prediction carries on what a key picture holds, a finer key picture pays for itself many times: a quarter
-// of quantizer_scale; else quantizer_scale.
+// Where model prediction carries on what a key picture holds, a finer key picture pays for itself many times:
+// quantizer_scale / kKeyRatio; else quantizer_scale.
+constexpr double kKeyRatio = 2.5;  // measured: docs/video.md
 double key_quantizer_for(const AssistedVideoOptions& options);
 
 // One frame as the server has it. All of one size; depth and ids are L's.
@@ -48,6 +51,7 @@ struct AssistedFrame {
   PlaneView<const float> depth;
   PlaneView<const uint32_t> id;
   const raster::Camera& camera;
+  uint64_t overhead_bytes = 0;  // of its packet beside the code: the bit rate pays for it
 };
 
 // What both sides know of the pictures before the first one.
@@ -75,13 +79,19 @@ class AssistedEncoder {
   AssistedEncoder(AssistedEncoder&&) noexcept;
   AssistedEncoder& operator=(AssistedEncoder&&) noexcept;
 
+  // What the next encode() will make, for a caller who must know before: a picture that stands alone.
+  bool next_is_key(bool force_key = false) const;
+
   // Codes the next frame; its bytes are appended to `out`. force_key: it stands alone. quantizer_scale > 0: instead of
-  // the options'.
+  // the options'; means nothing to a bit rate.
   Result<AssistedReport> encode(const AssistedFrame& frame, Bytes& out, bool force_key = false,
                                 double quantizer_scale = 0);
 
   // What the client shows for the last frame, bit for bit. Of the frames' size.
   void composite(ConstRgbView low, RgbView shown) const;
+
+  // Of a bit rate; without one it has no capacity.
+  const LeakyBucket& bucket() const;
 
  private:
   struct State;

@@ -181,6 +181,10 @@ Bytes PacketWriter::write(const FramePacket& packet, bool stands_alone) {
   return with_crc(writer);
 }
 
+uint64_t PacketWriter::overhead_bytes(FramePacket packet, bool stands_alone) const {
+  return PacketWriter(*this).write(without_bytes(std::move(packet)), stands_alone).size();
+}
+
 Result<FramePacket> PacketReader::read(std::span<const uint8_t> bytes) {
   if (!bytes.empty() && bytes[0] == kShortMagic) return read_short(bytes, whole_);
   PAC_TRY(const FramePacket packet, read_frame_packet(bytes));

@@ -55,6 +55,9 @@ class PacketWriter {
   // A short packet where it may be: codec mpeg1, not `stands_alone`, at most 250 frames after the last whole one.
   Bytes write(const FramePacket& packet, bool stands_alone);
 
+  // Of what write() would make, without model and difference.
+  uint64_t overhead_bytes(FramePacket packet, bool stands_alone) const;
+
  private:
   std::optional<FramePacket> whole_;  // the last; camera and number only
 };

@@ -112,9 +112,13 @@ Plot rate_plot(const SweepTable& table, const SweepPoint& any, SweepCodec codec,
 
 // ---- tables
 
-// "−52.1 %", or a dash.
+// "−52.1".
+Text signed_text(double number) {
+  return Text(number < 0 ? "−" : "+") + decimal_text(number < 0 ? -number : number, 1);
+}
+
 Text percent_text(double percent) {
-  return Text(percent < 0 ? "−" : "+") + decimal_text(percent < 0 ? -percent : percent, 1) + " %";
+  return signed_text(percent) + " %";
 }
 
 Text cell(const Text& content, const char* attributes = "") {
@@ -152,7 +156,7 @@ Text soft(const Text& text) {
 Text interval_cell(const std::optional<GainInterval>& mean, const std::optional<GainInterval>& worst, bool is_video) {
   if (!mean) return cell(soft("–"));
   Text content = percent_text(mean->percent);
-  if (mean->n_scenes > 1) content += Text("<br>") + soft(percent_text(mean->low) + " … " + percent_text(mean->high));
+  if (mean->n_scenes > 1) content += Text("<br>") + soft(signed_text(mean->low) + " … " + signed_text(mean->high));
   if (is_video) content += Text("<br>") + soft(worst ? "worst " + percent_text(worst->percent) : Text("worst –"));
   return cell(content, "class=\"ours\"");
 }

@@ -66,6 +66,10 @@ const ServerFrame& Server::last_frame() const {
   return state_->last;
 }
 
+const LeakyBucket* Server::bucket() const {
+  return state_->options.video.rate.is_on() && state_->video ? &state_->video->bucket() : nullptr;
+}
+
 Result<Bytes> Server::frame(uint32_t frame_number, const raster::Camera& camera) {
   PAC_TRY(FrameImages images, render(camera));
   return send(frame_number, camera, std::move(images), state_->options.target_bytes);
@@ -104,9 +108,10 @@ Result<CodedFrame> code_jpeg(const FrameImages& images, const ServerOptions& opt
 }
 
 Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& camera, const ServerOptions& options,
-                              AssistedEncoder& video, bool key) {
+                              AssistedEncoder& video, bool key, uint64_t overhead_bytes) {
   CodedFrame out;
-  const AssistedFrame frame{images.high.view(), images.low.view(), images.depth.view(), images.id.view(), camera};
+  const AssistedFrame frame{images.high.view(), images.low.view(), images.depth.view(), images.id.view(), camera,
+                            overhead_bytes};
   PAC_TRY(out.video, video.encode(frame, out.bytes, key));
   out.quality = out.video.quantizer_scale;
   out.composite = RgbImage(options.width, options.height);
@@ -119,15 +124,17 @@ Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& c
 Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, FrameImages images,
                            uint64_t target_bytes) {
   const ServerOptions& options = state_->options;
-  PAC_TRY(CodedFrame coded, state_->video ? code_video(images, camera, options, *state_->video, state_->key_requested)
-                                          : code_jpeg(images, options, target_bytes));
-  state_->key_requested = false;
-
   FramePacket packet;
   packet.frame = frame_number;
   packet.codec = options.codec;
   packet.has_model = options.transmit_model;
   packet.camera = camera;
+  const bool is_key = state_->video && state_->video->next_is_key(state_->key_requested);
+  const uint64_t overhead = state_->packets.overhead_bytes(packet, is_key);
+  PAC_TRY(CodedFrame coded, state_->video ? code_video(images, camera, options, *state_->video, is_key, overhead)
+                                          : code_jpeg(images, options, target_bytes));
+  state_->key_requested = false;
+
   packet.quality = coded.quality;
   packet.low_hash = image_hash(images.low.view());
   packet.model = images.model.bytes;

@@ -65,6 +65,9 @@ class Server {
 
   const ServerFrame& last_frame() const;
 
+  // The leaky bucket of options.video.rate; null without one.
+  const LeakyBucket* bucket() const;
+
   // The next frame stands alone (codec mpeg1): what a client asks for that has lost one.
   void request_key();
 

@@ -48,14 +48,15 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
   for (const Shot& shot : shots) {
     const FrameImages& images = shot.images;
     VideoFrame coded;
-    PAC_TRY(const AssistedReport report,
-            encoder.encode({images.high.view(), images.low.view(), images.depth.view(), images.id.view(), shot.camera},
-                           coded.code));
-    coded.quantizer_scale = report.quantizer_scale;
     FramePacket packet;
     packet.frame = static_cast<uint32_t>(frames.size());
     packet.codec = Codec::mpeg1;
     packet.camera = shot.camera;
+    const uint64_t overhead = packets.overhead_bytes(packet, encoder.next_is_key());
+    PAC_TRY(const AssistedReport report, encoder.encode({images.high.view(), images.low.view(), images.depth.view(),
+                                                         images.id.view(), shot.camera, overhead},
+                                                        coded.code));
+    coded.quantizer_scale = report.quantizer_scale;
     packet.difference = coded.code;
     coded.sent_bytes = packets.write(packet, report.is_key).size();
     if (keep_shown) {

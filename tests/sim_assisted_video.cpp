@@ -222,7 +222,7 @@ TEST_CASE("video refuses what it cannot do") {
   options.video.prediction = Prediction::block;  // with full differences
   CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
   options.video = {};
-  options.video.key_interval = 0;
+  options.video.key_interval = 133;
   CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
 }
 

@@ -75,7 +75,7 @@ TEST_CASE("shards of any count together do every job exactly once, in shares tha
   const auto jobs = sim::sweep_jobs(plan);
   CHECK(jobs.size() == 3 * (2 * 2 + 2 * 2 + 4 * 3));
   for (size_t i = 0; i < jobs.size(); ++i) CHECK(jobs[i].number == i);
-  for (const uint64_t count : {1, 2, 3, 7, 60, 100}) {
+  for (const uint64_t count : {1u, 2u, 3u, 7u, 60u, 100u}) {
     std::map<uint64_t, int> times_done;
     size_t least = jobs.size(), most = 0;
     for (uint64_t number = 1; number <= count; ++number) {
@@ -95,7 +95,7 @@ TEST_CASE("joined shards are the whole sweep, byte for byte, in tables, plots an
   const sim::SweepPlan plan = plan_of({{"small", {"texture"}, &set, test::small_camera}});
   const sim::SweepTable whole = table_of(plan, {1, 1}, 1);
   sim::SweepTable joined;
-  for (const uint64_t number : {3, 1, 2}) {
+  for (const uint64_t number : {3u, 1u, 2u}) {
     const auto part = sim::read_sweep_csv(sim::sweep_csv(table_of(plan, {number, 3}, 2)));
     REQUIRE(part.ok());
     REQUIRE(sim::join_sweep(joined, *part).ok());
@@ -159,13 +159,14 @@ TEST_CASE("every strict prefix of a CSV file is refused, or ends between two lin
     const bool whole_lines = n > 0 && csv[n - 1] == '\n';
     CHECK(sim::read_sweep_csv(csv.substr(0, n)).ok() == whole_lines);
   }
-  for (const auto& [from, to] : {std::pair("jpeg", "gif"), std::pair(",64,64", ",0,64"), std::pair(",1000,", ",1e3,"),
-                                 std::pair(",image,", ",imago,"), std::pair("20,20", "nan,20"),
-                                 std::pair("0,4,a", "9,4,a"), std::pair("0,4,a", "3,4,a")}) {
+  for (const auto& change : {std::pair("jpeg", "gif"), std::pair(",64,64", ",0,64"), std::pair(",1000,", ",1e3,"),
+                             std::pair(",image,", ",imago,"), std::pair("20,20", "nan,20"), std::pair("0,4,a", "9,4,a"),
+                             std::pair("0,4,a", "3,4,a")}) {
     std::string bad = csv;
+    const std::string from = change.first;
     CAPTURE(from);
     REQUIRE(contains(bad, from));
-    bad.replace(bad.find(from, bad.find('\n')), std::string(from).size(), to);
+    bad.replace(bad.find(from, bad.find('\n')), from.size(), change.second);
     CHECK(!sim::read_sweep_csv(bad).ok());
   }
 }

@@ -32,10 +32,14 @@ void declare_video(Options& options, Request& request) {
                              "mpeg1: 127+(H-L)/2 as the paper, or H predicted from L (full; block: halved)");
   options.real("--quantizer-scale", "Q", request.animation.quantizer_scale, 1, 31,
                "mpeg1: of the image-based arm; the other is matched to its bytes (8)");
-  options.integer("--bit-rate", "BPS", request.bit_rate_bps, 1000, 100000000,
-                  "mpeg1: both arms are matched to this rate instead");
-  options.integer("--gop", "N", video.key_interval, 1, 132,
-                  "mpeg1: pictures from one that stands alone to the next (132)");
+  options.integer(
+      "--bit-rate", "BPS", request.bit_rate_bps, 1000, 100000000,
+      "mpeg1: of the polygon-assisted arm, every packet and picture by picture, through a leaky bucket; the "
+      "image-based arm is matched to its bytes");
+  options.real("--buffer", "SECONDS", request.animation.buffer_seconds, 0.1, 60,
+               "--bit-rate: that the full bucket takes to run dry (1)");
+  options.integer("--gop", "N", video.key_interval, 0, 132,
+                  "mpeg1: pictures from one that stands alone to the next, 0: the first only (132; --bit-rate: 0)");
   options.choice<mpeg1::Effort>(
       "--effort", video.effort,
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
@@ -75,6 +79,11 @@ void declare(Options& options, Request& request) {
 
 double kilobits_a_second(uint64_t bytes, const Request& request) {
   return 8e-3 * static_cast<double>(bytes) * request.animation.frames_per_second / request.animation.frames;
+}
+
+sim::BitRate rate_of(const Request& request) {
+  const sim::AnimationOptions& animation = request.animation;
+  return {animation.bit_rate_bps, animation.frames_per_second, animation.buffer_seconds};
 }
 
 void json_arm(sim::JsonWriter& json, const char* name, const sim::VideoArm& arm, const Request& request) {
@@ -137,6 +146,15 @@ int print_as_json(const Request& request, const sim::Animation& animation) {
   json.field("frames_per_second", request.animation.frames_per_second);
   json.field("resident_model_bytes", animation.resident_model_bytes);
   json.field("packet_bytes", animation.packet_bytes);
+  if (animation.bucket_bytes > 0) {
+    const sim::BitRate rate = rate_of(request);
+    json.begin_object("bit_rate");
+    json.field("bits_per_second", rate.bits_per_second);
+    json.field("bucket_bytes", animation.bucket_bytes);
+    json.field("fullest_bucket_bytes", animation.fullest_bucket_bytes);
+    json.field("startup_seconds", rate.startup_seconds(animation.resident_model_bytes));
+    json.end_object();
+  }
   json_arm(json, "image_based", animation.image_based, request);
   json_arm(json, "polygon_assisted", animation.polygon_assisted, request);
   json.field("verdict", verdict_of_arms(animation));
@@ -163,6 +181,10 @@ void print_text(const Request& request, const sim::Animation& animation) {
     row(sim::kScores[kind].label, a.mean, b.mean, sim::kScores[kind].digits);
     row("  worst 5 % of frames", a.worst_5_percent, b.worst_5_percent, sim::kScores[kind].digits);
   }
+  if (animation.bucket_bytes > 0)
+    std::printf("\nbucket of %.0f bytes, fullest with %.0f; the model's %s bytes take %.1f s before the first frame\n",
+                animation.bucket_bytes, animation.fullest_bucket_bytes, grouped(animation.resident_model_bytes).c_str(),
+                rate_of(request).startup_seconds(animation.resident_model_bytes));
   std::printf("\n%s\n", verdict_of_arms(animation));
 }
 
@@ -179,7 +201,14 @@ int run_animate(Args args) {
   sim::AnimationOptions& animation = request.animation;
   if (options.given("--bit-rate") && options.given("--quantizer-scale"))
     return options.usage_error("--bit-rate chooses the quantizer itself: leave --quantizer-scale out");
+  if (options.given("--buffer") && !options.given("--bit-rate"))
+    return options.usage_error("--buffer says nothing without --bit-rate");
+  if (options.given("--bit-rate") && animation.codec != sim::VideoCodec::mpeg1)
+    return options.usage_error("--bit-rate needs --codec mpeg1");
+  if (options.given("--bit-rate") && animation.video.prediction != sim::Prediction::model)
+    return options.usage_error("--bit-rate needs --prediction model");
   animation.bit_rate_bps = static_cast<uint64_t>(request.bit_rate_bps);
+  if (options.given("--bit-rate") && !options.given("--gop")) animation.video.key_interval = 0;
   if (animation.video.prediction == sim::Prediction::block && !options.given("--difference"))
     animation.video.difference = sim::Difference::halved;
   if (animation.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
