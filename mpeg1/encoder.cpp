@@ -382,7 +382,7 @@ void Encoder::State::skip_macroblocks() {
 PictureReport Encoder::State::skip_everything(const PictureOptions& picture, std::vector<uint8_t>& out) {
   const size_t before = out.size();
   skip_macroblocks();
-  set_quantizers({}, 31);
+  set_quantizers(PictureType::P, {}, 31);
   PictureReport report = write_picture(PictureType::P, out);
   fill_planes(view_of(picture.reference != nullptr ? *picture.reference : reference), Planes::of(reconstruction));
   report.quantizer_scale = 31;
