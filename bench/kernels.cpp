@@ -85,6 +85,9 @@ void register_pixel_kernels() {
                [](Table t, In in, Out out, size_t n) { t.composite_row(in[0], in[1], out[0], n); });
   register_row("ycc_from_rgb_row", {{3, 0, 0}, {1, 1, 1}},
                [](Table t, In in, Out out, size_t n) { t.ycc_from_rgb_row(in[0], n, out[0], out[1], out[2]); });
+  register_row("ycc420_from_rgb_rows", {{3, 3, 0}, {1, 1, 1}}, [](Table t, In in, Out out, size_t n) {
+    t.ycc420_from_rgb_rows(in[0], in[1], n, out[0], out[1], out[2], out[2] + n / 2);
+  });
   register_row("rgb_from_ycc_row", {{1, 1, 1}, {3, 0, 0}},
                [](Table t, In in, Out out, size_t n) { t.rgb_from_ycc_row(in[0], in[1], in[2], n, out[0]); });
   register_row("downsample_h2v1_row", {{2, 0, 0}, {1, 0, 0}},

@@ -56,7 +56,7 @@ bool BandDecoder::find_restarts(const BandedScan& job) {
 }
 
 void BandDecoder::split(const BandedScan& job, int n_threads, const Kernels& kernels) {
-  constexpr int kBandsPerThread = 4;  // their work differs
+  constexpr int kBandsPerThread = 8;  // their work differs
   const Scan& scan = *job.scan;
   const int period = period_rows(scan), n_periods = ceil_div(scan.mcu_rows, period);
   const int n_bands = std::min(n_periods, kBandsPerThread * n_threads);

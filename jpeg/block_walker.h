@@ -35,6 +35,8 @@ class BlockWalker {
   // nonzero and dc_difference are 0.
   template <class OnBlock, class OnRestart>
   void walk(int mcu_row, const Levels& levels, OnBlock&& on_block, OnRestart&& on_restart) {
+    Slot slots[kMaxBlocksInMcu];
+    Slot* const end = make_slots(mcu_row, levels, slots);
     for (int mcu = 0; mcu < frame_->mcus_per_row; ++mcu) {
       if (restart_interval_ > 0) {
         if (to_restart_ == 0) {
@@ -45,30 +47,53 @@ class BlockWalker {
         }
         to_restart_ -= 1;
       }
-      for (int c = 0; c < frame_->n_components; ++c) walk_component(c, mcu_row, mcu, levels, on_block);
+      for (Slot* slot = slots; slot != end; ++slot) {
+        if (mcu >= slot->n_real) {
+          on_block(static_cast<const int16_t*>(nullptr), uint64_t{0}, 0, slot->table);
+          continue;
+        }
+        const int16_t* block = slot->levels;
+        const int dc = block[0];
+        on_block(block, *slot->nonzero, dc - *slot->dc, slot->table);
+        *slot->dc = dc;
+        slot->levels += 64 * slot->step;
+        slot->nonzero += slot->step;
+      }
     }
   }
 
  private:
-  template <class OnBlock>
-  void walk_component(int c, int mcu_row, int mcu, const Levels& levels, OnBlock&& on_block) {
-    const Component& component = frame_->components[c];
-    const int n_rows = StripTransform::rows_of_blocks(component, mcu_row), table = c == 0 ? 0 : 1;
-    int dc = dc_[c];
-    for (int by = 0; by < component.v; ++by) {
-      for (int bx = mcu * component.h; bx < (mcu + 1) * component.h; ++bx) {
-        if (by >= n_rows || bx >= component.width_blocks) {
-          on_block(static_cast<const int16_t*>(nullptr), uint64_t{0}, 0, table);
-          continue;
+  // One of an MCU's blocks.
+  struct Slot {
+    const int16_t* levels = nullptr;  // of the MCU at hand
+    const uint64_t* nonzero = nullptr;
+    int* dc = nullptr;  // PRED
+    int step = 1;       // blocks to the next MCU's
+    int n_real = 0;     // MCUs whose block lies in the image
+    int table = 0;
+  };
+
+  // In the order of the scan; returns their end.
+  Slot* make_slots(int mcu_row, const Levels& levels, Slot* out) {
+    for (int c = 0; c < frame_->n_components; ++c) {
+      const Component& component = frame_->components[c];
+      const int n_rows = StripTransform::rows_of_blocks(component, mcu_row);
+      for (int by = 0; by < component.v; ++by) {
+        for (int bx = 0; bx < component.h; ++bx, ++out) {
+          *out = {};
+          out->dc = &dc_[c];
+          out->table = c == 0 ? 0 : 1;
+          if (by >= n_rows || bx >= component.width_blocks) continue;
+          const size_t first =
+              static_cast<size_t>(by) * static_cast<size_t>(component.width_blocks) + static_cast<size_t>(bx);
+          out->levels = levels.zigzag[c].data() + 64 * first;
+          out->nonzero = levels.nonzero[c].data() + first;
+          out->step = component.h;
+          out->n_real = ceil_div(component.width_blocks - bx, component.h);
         }
-        const size_t i =
-            static_cast<size_t>(by) * static_cast<size_t>(component.width_blocks) + static_cast<size_t>(bx);
-        const int16_t* block = levels.zigzag[c].data() + 64 * i;
-        on_block(block, levels.nonzero[c][i], block[0] - dc, table);
-        dc = block[0];
       }
     }
-    dc_[c] = dc;
+    return out;
   }
 
   const Frame* frame_ = nullptr;

@@ -56,7 +56,7 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
 // Bands begin where a restart marker stands at the start of a row: predictions and bits begin anew there. Some more
 // than there are threads: their work differs.
 void ImageEncoder::split(const Frame& frame) {
-  constexpr int kBandsPerThread = 4;
+  constexpr int kBandsPerThread = 8;
   const int n_threads = options_.threads == 0 ? hardware_thread_count() : options_.threads;
   const int interval = options_.restart_interval_mcus;
   int n_bands = 1, period = frame.mcu_rows;

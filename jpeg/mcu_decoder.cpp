@@ -41,7 +41,7 @@ void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_
   for (int i = 0; !scan.is_progressive && i < scan.n_components; ++i) {
     ScanComponent& sc = scan_.components[i];
     if (!scan.keeps_levels) {
-      sc.blocks_per_row = static_cast<size_t>(kBatchMcus * sc.h);
+      sc.blocks_per_row = static_cast<size_t>(std::min(kBatchMcus, scan.mcus_per_row) * sc.h);
       levels_[i].resize(64 * sc.blocks_per_row * static_cast<size_t>(sc.v));
       sc.levels = levels_[i].data();
     }
@@ -52,8 +52,8 @@ void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_
   if (!scan.keeps_levels) set_up_slots(0);
 }
 
-// The blocks of each component in turn [T.81 A.2.3]: of the batch (as if of row 0), or of a row of MCUs whose levels are
-// kept.
+// The blocks of each component in turn [T.81 A.2.3]: of the batch (as if of row 0), or of a row of MCUs whose levels
+// are kept.
 void McuDecoder::set_up_slots(int mcu_row) {
   slots_.clear();
   for (int i = 0; i < scan_.n_components; ++i) {

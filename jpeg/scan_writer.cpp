@@ -56,8 +56,8 @@ void put_word(Bits& bits, uint64_t word) {
   bits.out += 8;
 }
 
-// count 0..32; `value` has no bits above.
-inline void put(Bits& bits, uint32_t value, int count) {
+// count 0..63; `value` has no bits above.
+inline void put(Bits& bits, uint64_t value, int count) {
   const int n_free = bits.n_free - count;
   if (n_free >= 0) {
     bits.pending = bits.pending << count | value;
@@ -102,35 +102,67 @@ void make_block_codes(const HuffmanCodes& dc, const HuffmanCodes& ac, BlockCodes
   }
 }
 
-void put_joined(Bits& bits, uint32_t entry) {
-  put(bits, entry >> 5, static_cast<int>(entry & 31));
+// Bits on their way to put(): several codes go out together.
+struct Code {
+  uint64_t value;
+  int length;
+};
+// Of a BlockCodes entry.
+Code code_of(uint32_t entry) {
+  return {entry >> 5, static_cast<int>(entry & 31)};
+}
+Code append(Code first, Code second) {
+  return {first.value << second.length | second.value, first.length + second.length};
+}
+// A value's extra bits behind the code of its symbol: at most 16 + 11 bits.
+Code value_code(uint32_t entry, uint32_t token) {
+  return append(code_of(entry), {token & 0xFFFF, static_cast<int>(token >> 16)});
+}
+void put(Bits& bits, Code code) {
+  put(bits, code.value, code.length);
 }
 
-// A value whose extra bits follow the code of its symbol: at most 16 + 11 bits.
-void put_value(Bits& bits, uint32_t entry, uint32_t token) {
-  const uint32_t size = token >> 16;
-  put(bits, (entry >> 5) << size | (token & 0xFFFF), static_cast<int>((entry & 31) + size));
-}
+// The AC levels of a block as codes, one after the other.
+struct AcCodes {
+  const int16_t* levels;
+  uint64_t rest;  // mask of those to come
+  const BlockCodes& codes;
+  int previous = 0;  // position of the last one
 
-// The bits of one block; arguments as of tokenize_block().
-inline void put_block(const int16_t* levels, uint64_t nonzero, int dc_difference, const BlockCodes& codes, Bits& bits) {
-  const uint32_t dc = value_token(dc_difference);
-  put_value(bits, codes.dc[dc >> 16], dc);
-  int previous = 0;
-  for (uint64_t rest = nonzero & ~uint64_t{1}; rest != 0; rest &= rest - 1) {
+  // ZRLs that must come before it go out at once, behind the one that waits.
+  Code next(Code& waiting, Bits& bits) {
     const int k = std::countr_zero(rest), level = levels[k];
     auto run = static_cast<uint32_t>(k - previous - 1);
     previous = k;
-    for (; run > 15; run -= 16) put_joined(bits, codes.ac[0xF0]);  // ZRL
-    const auto small = static_cast<uint32_t>(level + BlockCodes::kSmall);
-    if (small < 2 * BlockCodes::kSmall) {
-      put_joined(bits, codes.small[run][small]);
-    } else {
-      const uint32_t token = value_token(level);
-      put_value(bits, codes.ac[run << 4 | token >> 16], token);
+    rest &= rest - 1;
+    if (run > 15) {
+      put(bits, waiting);
+      waiting = {0, 0};
+      for (; run > 15; run -= 16) put(bits, code_of(codes.ac[0xF0]));
     }
+    const auto small = static_cast<uint32_t>(level + BlockCodes::kSmall);
+    if (small < 2 * BlockCodes::kSmall) return code_of(codes.small[run][small]);
+    const uint32_t token = value_token(level);
+    return value_code(codes.ac[run << 4 | token >> 16], token);
   }
-  if (previous != 63) put_joined(bits, codes.ac[0]);  // EOB
+  Code end() const { return previous != 63 ? code_of(codes.ac[0]) : Code{0, 0}; }  // EOB
+};
+
+// The bits of one block; arguments as of tokenize_block(). Codes go out in twos, at most 27 + 27 bits.
+inline void put_block(const int16_t* levels, uint64_t nonzero, int dc_difference, const BlockCodes& codes, Bits& bits) {
+  const uint32_t dc = value_token(dc_difference);
+  Code first = value_code(codes.dc[dc >> 16], dc), none{0, 0};
+  AcCodes ac{levels, nonzero & ~uint64_t{1}, codes};
+  while (ac.rest != 0) {
+    const Code second = ac.next(first, bits);
+    put(bits, append(first, second));
+    if (ac.rest == 0) {
+      put(bits, ac.end());
+      return;
+    }
+    first = ac.next(none, bits);
+  }
+  put(bits, append(first, ac.end()));
 }
 
 void put_restart(uint32_t number, Bits& bits) {

@@ -61,7 +61,7 @@ void StripTransform::reset(const Frame& frame, const SourceImage& image, const K
   }
   for (Plane& plane : full_chroma_) {
     plane.stride = full_width;
-    plane.samples.resize(static_cast<size_t>(2 * full_width));
+    plane.samples.resize(static_cast<size_t>(full_width));
   }
   spare_.resize(static_cast<size_t>(full_width));
 }
@@ -74,6 +74,29 @@ void StripTransform::load_row(int y, uint8_t* luma, uint8_t* cb, uint8_t* cr) co
     kernels_->pixel.ycc_from_rgb_row(image_.rgb.row(y), n, luma, cb, cr);
 }
 
+// Two rows at a time through one kernel. The last pixels of a row, repeated to a whole MCU, go through it by
+// themselves.
+void StripTransform::load_420(int mcu_row) {
+  const int first = 16 * mcu_row, n_rows = std::min(16, frame_.height - first);
+  const ptrdiff_t full_width = planes_[0].stride;
+  const ptrdiff_t main = frame_.width & ~3;  // the rounding of chroma alternates with its position
+  const auto n_rest = static_cast<size_t>(full_width - main);
+  for (int y = 0; y < n_rows; y += 2) {
+    const uint8_t* const rgb[2] = {image_.rgb.row(first + y),
+                                   image_.rgb.row(std::min(first + y + 1, frame_.height - 1))};
+    uint8_t *const upper = planes_[0].row(y), *const lower = planes_[0].row(y + 1);
+    uint8_t *const cb = planes_[1].row(y / 2), *const cr = planes_[2].row(y / 2);
+    kernels_->pixel.ycc420_from_rgb_rows(rgb[0], rgb[1], static_cast<size_t>(main), upper, lower, cb, cr);
+    uint8_t rest[2][3 * 20];  // at most 3 pixels and 15 more
+    for (int i = 0; i < 2 && n_rest > 0; ++i)
+      for (ptrdiff_t x = main; x < full_width; ++x)
+        std::memcpy(rest[i] + 3 * (x - main), rgb[i] + 3 * std::min<ptrdiff_t>(x, frame_.width - 1), 3);
+    kernels_->pixel.ycc420_from_rgb_rows(rest[0], rest[1], n_rest, upper + main, lower + main, cb + main / 2,
+                                         cr + main / 2);
+  }
+  repeat_last_rows(n_rows);
+}
+
 // Fills planes_ with the samples of one MCU row.
 void StripTransform::load(int mcu_row) {
   if (general_.is_needed()) {
@@ -81,31 +104,31 @@ void StripTransform::load(int mcu_row) {
       general_.load(mcu_row, c, planes_[c].samples.data(), planes_[c].stride);
     return;
   }
-  const int h = frame_.h_max, v = frame_.v_max, mcu_height = 8 * v;
+  const int h = frame_.h_max, mcu_height = 8 * frame_.v_max;
+  const bool color = frame_.n_components == 3;
+  if (color && frame_.v_max == 2 && image_.rgb.data != nullptr) {
+    load_420(mcu_row);
+    return;
+  }
   const int first = mcu_row * mcu_height, n_rows = std::min(mcu_height, frame_.height - first);
   const ptrdiff_t full_width = planes_[0].stride;
-  const bool color = frame_.n_components == 3, direct = h == 1 && v == 1;
-  for (int group = 0; group < ceil_div(n_rows, v); ++group) {
-    for (int i = 0; i < v; ++i) {
-      const int y = group * v + i;
-      uint8_t* rows[3] = {planes_[0].row(y), spare_.data(), spare_.data()};
-      for (int c = 1; color && c < 3; ++c) rows[c] = direct ? planes_[c].row(y) : full_chroma_[c - 1].row(i);
-      load_row(std::min(first + y, frame_.height - 1), rows[0], rows[1], rows[2]);
-      for (int c = 0; c < frame_.n_components; ++c) repeat_last(rows[c], frame_.width, full_width);
-    }
-    for (int c = 1; color && !direct && c < 3; ++c) {
-      Plane& full = full_chroma_[c - 1];
-      const auto n = static_cast<size_t>(8 * frame_.mcus_per_row);
-      if (v == 2)
-        kernels_->pixel.downsample_h2v2_row(full.row(0), full.row(1), n, planes_[c].row(group));
-      else
-        kernels_->pixel.downsample_h2v1_row(full.row(0), n, planes_[c].row(group));
-    }
+  for (int y = 0; y < n_rows; ++y) {
+    uint8_t* rows[3] = {planes_[0].row(y), spare_.data(), spare_.data()};
+    for (int c = 1; color && c < 3; ++c) rows[c] = h == 1 ? planes_[c].row(y) : full_chroma_[c - 1].row(0);
+    load_row(first + y, rows[0], rows[1], rows[2]);
+    for (int c = 0; c < frame_.n_components; ++c) repeat_last(rows[c], frame_.width, full_width);
+    for (int c = 1; color && h == 2 && c < 3; ++c)
+      kernels_->pixel.downsample_h2v1_row(rows[c], static_cast<size_t>(8 * frame_.mcus_per_row), planes_[c].row(y));
   }
+  repeat_last_rows(n_rows);
+}
+
+// Below the image's last rows, of which the planes hold n_rows: the last downsampled one.
+void StripTransform::repeat_last_rows(int n_rows) {
   for (int c = 0; c < frame_.n_components; ++c) {
-    const int loaded = ceil_div(n_rows, v) * frame_.components[c].v;
+    const int v = frame_.v_max, loaded = ceil_div(n_rows, v) * frame_.components[c].v;
     for (int y = loaded; y < 8 * frame_.components[c].v; ++y)
-      std::memcpy(planes_[c].row(y), planes_[c].row(loaded - 1), static_cast<size_t>(full_width));
+      std::memcpy(planes_[c].row(y), planes_[c].row(loaded - 1), static_cast<size_t>(planes_[c].stride));
   }
 }
 

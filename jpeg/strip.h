@@ -43,13 +43,15 @@ class StripTransform {
     uint8_t* row(int y) { return samples.data() + y * stride; }
   };
   void load(int mcu_row);
+  void load_420(int mcu_row);
+  void repeat_last_rows(int n_rows);
   void load_row(int y, uint8_t* luma, uint8_t* cb, uint8_t* cr) const;
 
   Frame frame_;
   SourceImage image_;
   const Kernels* kernels_ = nullptr;
   Plane planes_[3];             // one MCU row of each component, whole blocks wide
-  Plane full_chroma_[2];        // up to two rows of Cb and Cr before downsampling
+  Plane full_chroma_[2];        // a row of Cb and Cr before downsampling
   GeneralStrip general_;        // where the source or the sampling is none of the usual ones
   std::vector<uint8_t> spare_;  // rows that are computed and not wanted (chroma of a gray encoding)
 };

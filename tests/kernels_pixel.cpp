@@ -1,6 +1,8 @@
 // The pixel kernels of every instruction set equal the scalar ones.
 #include <doctest/doctest.h>
 
+#include <vector>
+
 #include "tests/support/kernel_check.h"
 
 namespace pac::test {
@@ -61,6 +63,31 @@ TEST_CASE("ycc_from_rgb_row: every instruction set gives the scalar bits") {
 }
 
 // The outputs of three planes above share one buffer; this one gives the last plane its own guard.
+TEST_CASE("ycc420_from_rgb_rows: every instruction set gives the scalar bits, and those of the rows it joins") {
+  KernelCheck check(4096);
+  for (const Pattern pattern : kPatterns) {
+    CAPTURE(pattern_name(pattern));
+    for_each_placement(kMaxWidth, [&](size_t half, Guard guard, size_t shift) {
+      const size_t n = 2 * half;
+      const uint8_t* upper = check.input<uint8_t>(0, 3 * n, guard, shift, pattern, 0, 255, n);
+      const uint8_t* lower = check.input<uint8_t>(1, 3 * n, guard, (shift * 7) % 64, Pattern::random, 0, 255, n + 1);
+      check.compare<uint8_t>(3 * n, guard, (shift * 3) % 64, [&](const Kernels& table, uint8_t* out) {
+        table.pixel.ycc420_from_rgb_rows(upper, lower, n, out, out + n, out + 2 * n, out + 2 * n + half);
+      });
+      const PixelKernels& scalar = kernels_for(Isa::scalar)->pixel;
+      std::vector<uint8_t> y(2 * n), cb(2 * n), cr(2 * n), apart(n), joined(3 * n);
+      scalar.ycc_from_rgb_row(upper, n, y.data(), cb.data(), cr.data());
+      scalar.ycc_from_rgb_row(lower, n, y.data() + n, cb.data() + n, cr.data() + n);
+      scalar.downsample_h2v2_row(cb.data(), cb.data() + n, half, apart.data());
+      scalar.downsample_h2v2_row(cr.data(), cr.data() + n, half, apart.data() + half);
+      y.insert(y.end(), apart.begin(), apart.end());
+      kernels().pixel.ycc420_from_rgb_rows(upper, lower, n, joined.data(), joined.data() + n, joined.data() + 2 * n,
+                                           joined.data() + 2 * n + half);
+      REQUIRE(joined == y);
+    });
+  }
+}
+
 TEST_CASE("ycc_from_rgb_row: each output plane ends where it should") {
   KernelCheck check(4096);
   for (int plane = 0; plane < 3; ++plane) {

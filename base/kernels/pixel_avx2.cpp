@@ -85,8 +85,9 @@ PixelPairs split(__m256i bytes, int offset) {
           _mm256_shuffle_epi8(bytes, _mm256_add_epi16(bg, from))};
 }
 
+// 32-bit lanes of which the upper 16 bits are Y, Cb, Cr, 0..255.
 struct Ycc {
-  __m256i y, cb, cr;  // 32-bit lanes, 0..255
+  __m256i y, cb, cr;
 };
 // 38470 exceeds a signed 16-bit factor: 22086 of it goes with red, 16384 with blue. So does 32768, but its negative
 // fits: cb and cr are subtracted from the center with all signs turned.
@@ -98,21 +99,24 @@ Ycc ycc_from_rgb(PixelPairs p) {
                                       _mm256_madd_epi16(p.blue_green, pair(-32768, 0)));
   const __m256i cr = _mm256_add_epi32(_mm256_madd_epi16(p.red_green, pair(-32768, 27439)),
                                       _mm256_madd_epi16(p.blue_green, pair(5329, 0)));
-  return {_mm256_srli_epi32(_mm256_add_epi32(y, half), 16), _mm256_srli_epi32(_mm256_sub_epi32(center, cb), 16),
-          _mm256_srli_epi32(_mm256_sub_epi32(center, cr), 16)};
+  return {_mm256_add_epi32(y, half), _mm256_sub_epi32(center, cb), _mm256_sub_epi32(center, cr)};
 }
 
+// The upper halves of the lanes of four vectors as bytes.
 __m256i pack(__m256i a, __m256i b, __m256i c, __m256i d) {
-  return _mm256_packus_epi16(_mm256_packs_epi32(a, b), _mm256_packs_epi32(c, d));
+  const auto upper = [](__m256i v) { return _mm256_srli_epi32(v, 16); };
+  return _mm256_packus_epi16(_mm256_packs_epi32(upper(a), upper(b)), _mm256_packs_epi32(upper(c), upper(d)));
 }
 
-// 96 bytes; the low half does pixels 0..15, the high half 16..31. The last load begins four bytes early instead of
-// ending four late.
+// Four pixels of each half, `at` bytes into its 48; the last load begins four bytes early instead of ending four late.
+Ycc convert(const uint8_t* rgb, int i) {
+  constexpr int kAt[4] = {0, 12, 24, 32};
+  return ycc_from_rgb(split(load_halves(rgb + kAt[i], rgb + 48 + kAt[i]), i == 3 ? 4 : 0));
+}
+
+// 96 bytes; the low half does pixels 0..15, the high half 16..31.
 void ycc_from_rgb_step(const uint8_t* rgb, uint8_t* y, uint8_t* cb, uint8_t* cr) {
-  const auto convert = [rgb](size_t at, int offset) {
-    return ycc_from_rgb(split(load_halves(rgb + at, rgb + 48 + at), offset));
-  };
-  const Ycc p0 = convert(0, 0), p1 = convert(12, 0), p2 = convert(24, 0), p3 = convert(32, 4);
+  const Ycc p0 = convert(rgb, 0), p1 = convert(rgb, 1), p2 = convert(rgb, 2), p3 = convert(rgb, 3);
   store(y, pack(p0.y, p1.y, p2.y, p3.y));
   store(cb, pack(p0.cb, p1.cb, p2.cb, p3.cb));
   store(cr, pack(p0.cr, p1.cr, p2.cr, p3.cr));
@@ -128,6 +132,57 @@ void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uin
   copy(y + i, last[0], n - i);
   copy(cb + i, last[1], n - i);
   copy(cr + i, last[2], n - i);
+}
+
+// Cb in the even and Cr in the odd 16-bit lanes: four pixels of each half.
+__m256i chroma_of(const Ycc& p) {
+  return _mm256_blend_epi16(_mm256_srli_epi32(p.cb, 16), p.cr, 0xAA);
+}
+
+// Of two rows' sums of eight pixels, chroma_of() added: averages of four samples each.
+__m256i quarter_of_pairs(__m256i first, __m256i second) {
+  const __m256 a = _mm256_castsi256_ps(first), b = _mm256_castsi256_ps(second);
+  const __m256i even = _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0x88));
+  const __m256i odd = _mm256_castps_si256(_mm256_shuffle_ps(a, b, 0xDD));
+  const __m256i bias = _mm256_set1_epi64x(0x0002000200010001);
+  return _mm256_srli_epi16(_mm256_add_epi16(_mm256_add_epi16(even, odd), bias), 2);
+}
+
+// 32 pixels of each row.
+void ycc420_from_rgb_step(const uint8_t* upper_rgb, const uint8_t* lower_rgb, uint8_t* upper_y, uint8_t* lower_y,
+                          uint8_t* cb, uint8_t* cr) {
+  __m256i upper[4], lower[4], sums[4];
+  for (int i = 0; i < 4; ++i) {
+    const Ycc a = convert(upper_rgb, i), b = convert(lower_rgb, i);
+    upper[i] = a.y;
+    lower[i] = b.y;
+    sums[i] = _mm256_add_epi16(chroma_of(a), chroma_of(b));
+  }
+  store(upper_y, pack(upper[0], upper[1], upper[2], upper[3]));
+  store(lower_y, pack(lower[0], lower[1], lower[2], lower[3]));
+  const __m256i mixed = _mm256_packus_epi16(quarter_of_pairs(sums[0], sums[1]), quarter_of_pairs(sums[2], sums[3]));
+  const __m256i apart = _mm256_shuffle_epi8(mixed, twice(_mm_setr_epi8(0, 2, 4, 6, 8, 10, 12, 14,  //
+                                                                       1, 3, 5, 7, 9, 11, 13, 15)));
+  const __m256i both = _mm256_permute4x64_epi64(apart, 0xD8);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(cb), _mm256_castsi256_si128(both));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(cr), _mm256_extracti128_si256(both, 1));
+}
+
+void ycc420_from_rgb_rows(const uint8_t* upper_rgb, const uint8_t* lower_rgb, size_t n, uint8_t* upper_y,
+                          uint8_t* lower_y, uint8_t* cb, uint8_t* cr) {
+  size_t i = 0;
+  for (; i + kStep <= n; i += kStep)
+    ycc420_from_rgb_step(upper_rgb + 3 * i, lower_rgb + 3 * i, upper_y + i, lower_y + i, cb + i / 2, cr + i / 2);
+  if (i == n) return;
+  const size_t count = n - i;
+  uint8_t rgb[2][3 * kStep] = {}, y[2][kStep], chroma[2][kStep / 2];
+  copy(rgb[0], upper_rgb + 3 * i, 3 * count);
+  copy(rgb[1], lower_rgb + 3 * i, 3 * count);
+  ycc420_from_rgb_step(rgb[0], rgb[1], y[0], y[1], chroma[0], chroma[1]);
+  copy(upper_y + i, y[0], count);
+  copy(lower_y + i, y[1], count);
+  copy(cb + i / 2, chroma[0], count / 2);
+  copy(cr + i / 2, chroma[1], count / 2);
 }
 
 struct Rgb {
@@ -436,6 +491,7 @@ void fill_pixel_avx2(PixelKernels& table) {
   table.difference_row = difference_row;
   table.composite_row = composite_row;
   table.ycc_from_rgb_row = ycc_from_rgb_row;
+  table.ycc420_from_rgb_rows = ycc420_from_rgb_rows;
   table.rgb_from_ycc_row = rgb_from_ycc_row;
   table.downsample_h2v1_row = downsample_h2v1_row;
   table.downsample_h2v2_row = downsample_h2v2_row;

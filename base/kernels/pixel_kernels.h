@@ -27,6 +27,11 @@ struct PixelKernels {
   //   b = y + ((116130 u + 32768) >> 16)
   void (*rgb_from_ycc_row)(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb);
 
+  // Two rows to 4:2:0: ycc_from_rgb_row() of both, then downsample_h2v2_row() of their Cb and of their Cr. n counts
+  // pixels of a row and is even; cb and cr get n / 2 samples.
+  void (*ycc420_from_rgb_rows)(const uint8_t* upper_rgb, const uint8_t* lower_rgb, size_t n, uint8_t* upper_y,
+                               uint8_t* lower_y, uint8_t* cb, uint8_t* cr);
+
   // Box averages; n counts outputs, inputs hold 2n samples. The rounding bias alternates so that it has no drift:
   //   h2v1: out[i] = (in[2i] + in[2i+1] + (i & 1)) >> 1
   //   h2v2: out[i] = (a[2i] + a[2i+1] + b[2i] + b[2i+1] + 1 + (i & 1)) >> 2       (a, b: upper and lower row)

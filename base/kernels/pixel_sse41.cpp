@@ -325,12 +325,15 @@ void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t
   }
 }
 
+#include "base/kernels/ycc420_simd.inc"
+
 }  // namespace
 
 void fill_pixel_sse41(PixelKernels& table) {
   table.difference_row = difference_row;
   table.composite_row = composite_row;
   table.ycc_from_rgb_row = ycc_from_rgb_row;
+  table.ycc420_from_rgb_rows = ycc420_from_rgb_rows;
   table.rgb_from_ycc_row = rgb_from_ycc_row;
   table.downsample_h2v1_row = downsample_h2v1_row;
   table.downsample_h2v2_row = downsample_h2v2_row;

@@ -54,6 +54,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(pixel, difference_row),
     PAC_KERNEL(pixel, composite_row),
     PAC_KERNEL(pixel, ycc_from_rgb_row),
+    PAC_KERNEL(pixel, ycc420_from_rgb_rows),
     PAC_KERNEL(pixel, rgb_from_ycc_row),
     PAC_KERNEL(pixel, downsample_h2v1_row),
     PAC_KERNEL(pixel, downsample_h2v2_row),
