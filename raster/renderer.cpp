@@ -121,6 +121,12 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
     return Failure{Error::bad_argument, 0, "previous camera is missing, singular or not finite"};
   input.pattern = sample_pattern(qualities[0]->samples);
   if (input.pattern.empty()) return Failure{Error::bad_argument, 0, "samples must be 1, 4, 16 or 64"};
+  for (int r = 0; r < 2; ++r) {
+    if (qualities[r] == nullptr) continue;
+    const int n = input.shading_samples[r] = qualities[r]->shading_samples;
+    if (n != 0 && ((n != 1 && n != 4) || n >= qualities[r]->samples))
+      return Failure{Error::bad_argument, 0, "shading_samples must be 0, or 1 or 4 and fewer than samples"};
+  }
   if (width == 0 || height == 0) return RenderStats{};
   PAC_TRY(const Mesh* const mesh, pose(scene));
   FrameInput frame{

@@ -30,6 +30,10 @@ struct RenderQuality {
   int samples = 1;               // 1, 4, 16 or 64 a pixel, box-filtered
   bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
   Lighting lighting = Lighting::local;
+  // Where colors are computed: 0 = at every sample (supersampling, the reference); else once for each triangle that a
+  // pixel shows, at the pixel's center (1; samples 4, 16 or 64) or at the centers of its quarters (4; samples 16 or
+  // 64), and weighted by the samples that show it. Coverage and depth are the samples' own either way.
+  int shading_samples = 0;
   int light_samples = 16;  // full lighting: rays a pixel to each light with a size, and of ambient occlusion: 1..64
 
   bool operator==(const RenderQuality&) const = default;
@@ -72,13 +76,13 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   // Draws. Fails with corrupt (mesh, object or material indices out of range: nothing is drawn) or bad_argument
-  // (samples, view sizes, a camera that is singular or not finite).
+  // (samples, shading_samples, view sizes, a camera that is singular or not finite).
   Result<RenderStats> render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
                              const RenderTargets& targets);
 
   // H, L and D = 127 + (H-L)/2 of a split that shares the geometry, in one traversal [Levoy95 s.4.1 footnote]:
-  // clipping, setup, visibility once. `high` and `low` must have equal samples and cull_back_faces. Bits equal two
-  // render() calls and a subtraction.
+  // clipping, setup, visibility once. `high` and `low` must have equal samples and cull_back_faces; shading_samples may
+  // differ. Bits equal two render() calls and a subtraction.
   Result<RenderStats> render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,
                                   const RenderQuality& low, const RenderTargets& high_targets, RgbView low_color,
                                   RgbView difference);

@@ -131,8 +131,8 @@ Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const Re
   surfaces.resize(scene.materials.size());
   constexpr uint32_t kNone = UINT32_MAX;
   uint32_t first_plain = kNone;
-  float bias = 0;  // -log2(sqrt(samples))
-  for (int n = quality.samples; n > 1; n /= 4) bias -= 1.0f;
+  float bias = 0;  // -log2(sqrt(places where a pixel is shaded))
+  for (int n = quality.shading_samples == 0 ? quality.samples : quality.shading_samples; n > 1; n /= 4) bias -= 1.0f;
   for (uint32_t i = 0; i < surfaces.size(); ++i) {
     const Material& material = scene.materials[i];
     Surface& surface = surfaces[i];

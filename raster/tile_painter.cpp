@@ -12,27 +12,99 @@ void TilePainter::paint(const PaintInput& input, int tile) {
                   std::min(kTileSize, input.height - tile_y * kTileSize)};
   input.draw_list->triangles_of(tile, triangles_);
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
-  const auto n_samples = static_cast<int>(input.pattern.size());
+  const size_t n_samples = input.pattern.size();
   for (int r = 0; r < n_renderings; ++r)
     for (int c = 0; c < 3; ++c)
       std::fill_n(sums_[r] + c * kTilePixels, kTilePixels,
                   static_cast<uint16_t>(n_samples * input.background[c] + n_samples / 2));
-  for (int s = 0; s < n_samples; ++s) {
-    const SampleOffset offset = input.pattern[static_cast<size_t>(s)];
-    const SamplePosition origin{area.x * 256 + offset.x, area.y * 256 + offset.y};
-    if (triangles_.empty() && s > 0) break;
-    rasterize(input, origin);
-    if (s == 0) write_depth_and_id(input, area);
-    if (s == 0 && !input.previous.empty()) write_previous(input, area, origin);
-    const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
-    if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
-    for (int r = 0; r < n_renderings; ++r) {
-      if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
-      n_packs_ = n_packs;
-      shade(input, {r, s, origin});
-    }
+  write_first_sample(input, area);
+  if (n_samples == 1) {
+    shade_first_sample(input, area);
+  } else if (!triangles_.empty()) {
+    for (size_t first = 0; first < n_samples; first += kGridSamples)
+      paint_grid(input, area, input.pattern.subspan(first, std::min<size_t>(kGridSamples, n_samples - first)),
+                 static_cast<int>(first));
   }
   write_color(input, area);
+}
+
+SamplePosition TilePainter::position(const Area& area, SampleOffset offset) {
+  return {area.x * 256 + offset.x, area.y * 256 + offset.y};
+}
+
+// Depth, ids and previous positions; what it rasterizes stays in depth_ and ids_.
+void TilePainter::write_first_sample(const PaintInput& input, const Area& area) {
+  if (input.pattern.size() > 1 && input.depth.empty() && input.id.empty() && input.previous.empty()) return;
+  const SamplePosition origin = position(area, input.pattern[0]);
+  rasterize(input, origin);
+  write_depth_and_id(input, area);
+  if (!input.previous.empty()) write_previous(input, area, origin);
+}
+
+void TilePainter::shade_first_sample(const PaintInput& input, const Area& area) {
+  const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
+  const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+  if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
+  for (int r = 0; r < n_renderings; ++r) {
+    if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
+    n_packs_ = n_packs;
+    shade(input, {r, 0, 1, position(area, input.pattern[0]), false});
+  }
+}
+
+void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets,
+                             int first_sample) {
+  grid_ = {static_cast<int>(offsets.size()), {}, {}, 255, 0, whole_, near_z_, far_z_, grid_ids_, grid_depth_};
+  for (size_t s = 0; s < kGridSamples; ++s) {
+    const SampleOffset offset = offsets[s % offsets.size()];
+    grid_.x[s] = offset.x;
+    grid_.y[s] = offset.y;
+    grid_.first_offset = std::min({grid_.first_offset, int32_t{offset.x}, int32_t{offset.y}});
+    grid_.last_offset = std::max({grid_.last_offset, int32_t{offset.x}, int32_t{offset.y}});
+  }
+  std::fill_n(whole_, kTilePixels, 0u);
+  std::fill_n(near_z_, kTilePixels, 1.0f);
+  std::fill_n(far_z_, kTilePixels, 1.0f);
+  const SamplePosition corner{area.x * 256, area.y * 256};
+  for (size_t i = 0; i < triangles_.size(); ++i)
+    input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
+  shade_grid(input, area, 0, first_sample);
+  if (input.surfaces[1] != nullptr) shade_grid(input, area, 1, first_sample);
+}
+
+// Every sample by itself; all at the pixel's center; or those of each quarter of the pixel at its center.
+int TilePainter::list_groups(int shading_samples, int first_sample, ShadingGroup groups[kGridSamples]) const {
+  const uint32_t all = (1u << grid_.n) - 1;
+  if (shading_samples == 0) {
+    for (int s = 0; s < grid_.n; ++s)
+      groups[s] = {1u << s, {static_cast<uint8_t>(grid_.x[s]), static_cast<uint8_t>(grid_.y[s])}, first_sample + s};
+    return grid_.n;
+  }
+  if (shading_samples == 1) {
+    groups[0] = {all, {128, 128}, 0};
+    return 1;
+  }
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const int right = quarter & 1, below = quarter >> 1;
+    groups[quarter] = {0, {static_cast<uint8_t>(64 + 128 * right), static_cast<uint8_t>(64 + 128 * below)}, quarter};
+    for (int s = 0; s < grid_.n; ++s)
+      if (grid_.x[s] / 128 == right && grid_.y[s] / 128 == below) groups[quarter].samples |= 1u << s;
+  }
+  return 4;
+}
+
+void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample) {
+  ShadingGroup groups[kGridSamples];
+  const int shading_samples = input.shading_samples[rendering];
+  const int n_groups = list_groups(shading_samples, first_sample, groups);
+  const int count = shading_samples == 0 ? static_cast<int>(input.pattern.size()) : shading_samples;
+  for (int row = 0; row < area.height; row += kGridRows)
+    for (int i = 0; i < n_groups; ++i) {
+      if (groups[i].samples == 0) continue;
+      n_packs_ = input.kernels->tile.collect_grid(grid_, groups[i].samples, row, std::min(row + kGridRows, area.height),
+                                                  area.width, triangles_.data(), packs_);
+      shade(input, {rendering, groups[i].number, count, position(area, groups[i].place), shading_samples != 0});
+    }
 }
 
 void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
@@ -62,14 +134,14 @@ void TilePainter::shade(const PaintInput& input, const Pass& pass) {
   }
 }
 
-// The rays to lights with a size, and into the sky, are shared out among the samples of a pixel.
+// The rays to lights with a size, and into the sky, are shared out among the places where a pixel is shaded.
 const float* TilePainter::cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface,
                                           const LanePack* packs, int n) {
   if (surface.shadows == nullptr) return nullptr;
   uint8_t masks[kBatchPacks];
   for (int i = 0; i < n; ++i) masks[i] = packs[i].mask;
-  const int n_rays = std::max(surface.shadows->samples.count / static_cast<int>(input.pattern.size()), 1);
-  cast_shadows(*surface.shadows, input.kernels->tile, surface.lighting, n, masks, {pass.sample * n_rays, n_rays},
+  const int n_rays = std::max(surface.shadows->samples.count / pass.count, 1);
+  cast_shadows(*surface.shadows, input.kernels->tile, surface.lighting, n, masks, {pass.number * n_rays, n_rays},
                rows_ + surface.layout.normal * kBatchLanes, rows_ + surface.layout.position * kBatchLanes, visibility_);
   return visibility_;
 }
@@ -94,7 +166,8 @@ void TilePainter::shade_batch(const PaintInput& input, const Pass& pass, const S
     if (surface.lighting.has_specular != 0) specular = specular_;
   }
   if (textured) kernels.sample_texture(surface.sampler, 8 * n, row(layout.uv), row(layout.uv + 1), lod_, texels_);
-  kernels.accumulate(packs, n, rows_, textured ? texels_ : nullptr, specular, input.background, sums_[pass.rendering]);
+  kernels.accumulate(packs, n, pass.weighted, rows_, textured ? texels_ : nullptr, specular, input.background,
+                     sums_[pass.rendering]);
 }
 
 void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {

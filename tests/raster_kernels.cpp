@@ -81,6 +81,95 @@ TEST_CASE("rasterize: every instruction set gives the scalar bits, from slivers 
   });
 }
 
+// What the samples of a tile see, by the grid kernels of one instruction set.
+struct GridTile {
+  alignas(32) uint32_t whole[kTilePixels];
+  alignas(32) float near_z[kTilePixels], far_z[kTilePixels];
+  alignas(32) uint32_t ids[kTilePixels * kGridSamples];
+  alignas(32) float depth[kTilePixels * kGridSamples];
+  SampleGrid grid;
+
+  explicit GridTile(std::span<const SampleOffset> pattern) {
+    grid = {static_cast<int>(pattern.size()), {}, {}, 0, 255, whole, near_z, far_z, ids, depth};
+    for (size_t s = 0; s < kGridSamples; ++s) {
+      grid.x[s] = pattern[s % pattern.size()].x;
+      grid.y[s] = pattern[s % pattern.size()].y;
+    }
+    std::fill_n(whole, kTilePixels, 0u);
+    std::fill_n(near_z, kTilePixels, 1.0f);
+    std::fill_n(far_z, kTilePixels, 1.0f);
+  }
+  uint32_t id_at(int pixel, int sample) const {
+    return whole[pixel] == kSplitPixel ? ids[pixel * kGridSamples + sample] : whole[pixel];
+  }
+};
+
+TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on every instruction set") {
+  for (const Isa isa : {Isa::scalar, Isa::sse41, Isa::avx2, Isa::neon}) {
+    const Kernels* const table = kernels_for(isa);
+    if (table == nullptr) continue;
+    Random random(31);
+    uint64_t n_whole = 0, n_split = 0;
+    for (int round = 0; round < 300; ++round) {
+      const auto pattern = sample_pattern(round % 3 == 0 ? 4 : 16);
+      const auto corner = static_cast<int32_t>(random.bits() % 4) * kTileSize * 256;
+      GridTile tile(pattern);
+      std::vector<RasterTriangle> triangles;
+      while (triangles.size() < 10) {
+        RasterTriangle t{};
+        if (random_triangle(random, pattern, t)) triangles.push_back(t);
+        if (triangles.size() == 4) triangles.push_back(triangles[1]);  // equal depth: the earlier one stays
+      }
+      std::vector<const RasterTriangle*> list;
+      for (const RasterTriangle& t : triangles) list.push_back(&t);
+      for (uint32_t i = 0; i < list.size(); ++i)
+        table->tile.rasterize_grid(*list[i], i + 1, list.data(), {corner, corner}, tile.grid);
+      for (int s = 0; s < tile.grid.n; ++s) {
+        Tile expected;
+        std::fill(std::begin(expected.depth), std::end(expected.depth), 1.0f);
+        std::fill(std::begin(expected.ids), std::end(expected.ids), 0u);
+        for (uint32_t i = 0; i < list.size(); ++i)
+          kernels_for(Isa::scalar)
+              ->tile.rasterize(*list[i], i + 1, {corner + tile.grid.x[s], corner + tile.grid.y[s]}, expected.depth,
+                               expected.ids);
+        for (int pixel = 0; pixel < kTilePixels; ++pixel) REQUIRE(tile.id_at(pixel, s) == expected.ids[pixel]);
+      }
+      for (const uint32_t id : tile.whole) (id == kSplitPixel ? n_split : n_whole) += id != 0 ? 1 : 0;
+    }
+    CHECK(n_split > 5000);
+    if (isa != Isa::scalar) CHECK(n_whole > 5000);
+  }
+}
+
+TEST_CASE("collect_grid: every instruction set gives the scalar packs, whichever form the pixels have") {
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(37);
+    std::vector<RasterTriangle> triangles(20);
+    std::vector<const RasterTriangle*> list;
+    for (const RasterTriangle& t : triangles) list.push_back(&t);
+    std::vector<LanePack> expected(kTilePixels * kGridSamples), actual(kTilePixels * kGridSamples);
+    for (int round = 0; round < 100; ++round) {
+      GridTile tile(sample_pattern(16));
+      const uint32_t kinds = 1 + random.bits() % 20;
+      for (int pixel = 0; pixel < kTilePixels; ++pixel) {
+        tile.whole[pixel] = random.bits() % 3 == 0 ? kSplitPixel : round % 2 == 0 ? 7 % kinds : random.bits() % kinds;
+        for (int s = 0; s < kGridSamples; ++s) tile.ids[pixel * kGridSamples + s] = random.bits() % kinds;
+      }
+      const uint32_t samples = round % 4 == 0 ? 0xFFFF : 1 + random.bits() % 0xFFFF;
+      const int first = static_cast<int>(random.bits() % 16), width = 1 + static_cast<int>(random.bits() % kTileSize);
+      const int n = scalar.tile.collect_grid(tile.grid, samples, first, first + 8, width, list.data(), expected.data());
+      REQUIRE(table.tile.collect_grid(tile.grid, samples, first, first + 8, width, list.data(), actual.data()) == n);
+      for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+        REQUIRE(expected[i].triangle == actual[i].triangle);
+        REQUIRE(expected[i].x == actual[i].x);
+        REQUIRE(expected[i].y == actual[i].y);
+        REQUIRE(expected[i].mask == actual[i].mask);
+        REQUIRE(std::memcmp(expected[i].weight, actual[i].weight, 8) == 0);
+      }
+    }
+  });
+}
+
 // Triangles with attributes, and packs of them.
 struct PackedTriangles {
   std::vector<RasterTriangle> triangles;
@@ -102,9 +191,15 @@ PackedTriangles random_packs(uint32_t seed, int n) {
   }
   for (size_t i = 0; i < out.triangles.size(); ++i)
     out.triangles[i].attributes[0] = out.triangles[i].attributes[1] = out.attributes[i].data();
-  for (int i = 0; i < n; ++i)
-    out.packs.push_back({&out.triangles[random.bits() % 16], static_cast<uint8_t>(random.bits() % 4 * 8),
-                         static_cast<uint8_t>(random.bits() % kTileSize), static_cast<uint8_t>(random.bits())});
+  for (int i = 0; i < n; ++i) {
+    LanePack pack{&out.triangles[random.bits() % 16],
+                  static_cast<uint8_t>(random.bits() % 4 * 8),
+                  static_cast<uint8_t>(random.bits() % kTileSize),
+                  static_cast<uint8_t>(random.bits()),
+                  {}};
+    for (uint8_t& weight : pack.weight) weight = static_cast<uint8_t>(random.bits() % (kGridSamples + 1));
+    out.packs.push_back(pack);
+  }
   return out;
 }
 
@@ -264,8 +359,9 @@ TEST_CASE("accumulate and resolve_row: every instruction set gives the scalar bi
       actual = expected;
       const float* t = round % 2 != 0 ? texels.data() : nullptr;
       const float* s = round % 4 >= 2 ? specular.data() : nullptr;
-      scalar.tile.accumulate(input.packs.data(), n, color.data(), t, s, background, expected.data());
-      table.tile.accumulate(input.packs.data(), n, color.data(), t, s, background, actual.data());
+      const bool weighted = round % 8 >= 4;
+      scalar.tile.accumulate(input.packs.data(), n, weighted, color.data(), t, s, background, expected.data());
+      table.tile.accumulate(input.packs.data(), n, weighted, color.data(), t, s, background, actual.data());
       REQUIRE(expected == actual);
     }
     test::KernelCheck check(4096);

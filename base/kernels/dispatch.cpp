@@ -42,6 +42,7 @@ void fill(Kernels& table, Isa isa) {
   fill_motion_scalar(table.motion);
   fill_pixel_scalar(table.pixel);
   fill_tile_scalar(table.tile);
+  fill_grid_scalar(table.tile);
   fill_warp_scalar(table.warp);
 #ifdef PAC_HAVE_SSE41
   if (isa == Isa::sse41 || isa == Isa::avx2) {

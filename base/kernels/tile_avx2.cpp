@@ -22,6 +22,9 @@ inline F8 load(const float* p) {
 inline I8 load(const int32_t* p) {
   return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))};
 }
+inline I8 load_bytes(const uint8_t* p) {
+  return {_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(p)))};
+}
 inline void store(float* p, F8 a) {
   _mm256_storeu_ps(p, a.v);
 }
@@ -138,7 +141,7 @@ inline LaneMask16 lane_mask_16(uint8_t mask) {
   const __m128i bit = _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128);
   return _mm_cmpeq_epi16(_mm_and_si128(_mm_set1_epi16(mask), bit), bit);
 }
-// Adds eight values in [-255, 255] to 16-bit sums in the lanes of the mask.
+// Adds eight values in [-4080, 4080] to 16-bit sums in the lanes of the mask.
 inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   const __m128i packed = _mm_packs_epi32(_mm256_castsi256_si128(values.v), _mm256_extracti128_si256(values.v, 1));
   auto* at = reinterpret_cast<__m128i*>(sums);

@@ -48,6 +48,22 @@ struct LanePack {
   const RasterTriangle* triangle;
   uint8_t x, y;  // of lane 0 in the tile; x is a multiple of 8
   uint8_t mask;
+  uint8_t weight[8];  // how many samples of its pixel a lane of the mask stands for: collect_grid() alone sets it
+};
+
+// What several samples of each pixel of a tile see. Pixels that show one triangle at all samples hold its id alone; the
+// others hold id and depth of every sample. Which form a pixel has may differ between instruction sets, what its
+// samples see may not. All arrays are the caller's, 32-byte aligned.
+constexpr int kGridSamples = 16;              // room for so many a pixel
+constexpr uint32_t kSplitPixel = UINT32_MAX;  // in `whole`: see ids and depth
+struct SampleGrid {
+  int n;                                     // 4 or 16 samples in use
+  int32_t x[kGridSamples], y[kGridSamples];  // their offsets inside the pixel, 0..255; beyond n: any such
+  int32_t first_offset, last_offset;         // the least and the greatest offset of either axis
+  uint32_t* whole;                           // kTileSize^2: 0 = background, else 1 + index of the triangle
+  float *near_z, *far_z;                     // kTileSize^2: every depth of the pixel lies between them
+  uint32_t* ids;                             // kTileSize^2 * kGridSamples, sample after sample
+  float* depth;                              // the same
 };
 
 // Rows that interpolate() writes. LOD needs the texture's size; null `lod` where there is no texture.
@@ -121,6 +137,16 @@ struct TileKernels {
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
 
+  // The same for all samples of the grid at once; origin: 256 * tile origin. `triangles`: those of the ids so far.
+  void (*rasterize_grid)(const RasterTriangle& triangle, uint32_t id, const RasterTriangle* const* triangles,
+                         SamplePosition origin, const SampleGrid& grid);
+
+  // As collect_packs() for rows [first_row, last_row) of the tile: one pack for each triangle that the samples in the
+  // set `samples` (bit s = sample s) see in each group of eight pixels, with the number of such samples as weights.
+  // Room for 4 * kGridSamples * 8 packs a row.
+  int (*collect_grid)(const SampleGrid& grid, uint32_t samples, int first_row, int last_row, int width,
+                      const RasterTriangle* const* triangles, LanePack* packs);
+
   // One pack for each triangle seen in each group of eight of the tile's first width x height pixels, in order. ids: 0
   // = none, else 1 + index into `triangles`; groups of eight are read whole. Room for kTileSize^2 packs; returns how
   // many.
@@ -148,10 +174,11 @@ struct TileKernels {
   void (*sample_texture)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,
                          float* texels);
 
-  // Rounds color * texel / 255 + specular to 0..255 and adds it minus `background` to the accumulators of the pixels in
-  // the masks. texels, specular: 3 rows or null. sums: 3 planes of kTileSize^2; modulo 2^16.
-  void (*accumulate)(const LanePack* packs, int n, const float* color, const float* texels, const float* specular,
-                     const uint8_t background[3], uint16_t* sums);
+  // Rounds color * texel / 255 + specular to 0..255 and adds it minus `background`, as often as the lane's weight says
+  // where `weighted`, to the accumulators of the pixels in the masks. texels, specular: 3 rows or null. sums: 3 planes
+  // of kTileSize^2; modulo 2^16.
+  void (*accumulate)(const LanePack* packs, int n, bool weighted, const float* color, const float* texels,
+                     const float* specular, const uint8_t background[3], uint16_t* sums);
 
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);
@@ -159,6 +186,7 @@ struct TileKernels {
 
 // One per instruction set: overwrites the entries that it improves.
 void fill_tile_scalar(TileKernels& table);
+void fill_grid_scalar(TileKernels& table);
 void fill_tile_sse41(TileKernels& table);
 void fill_tile_avx2(TileKernels& table);
 void fill_tile_neon(TileKernels& table);

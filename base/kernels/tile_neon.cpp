@@ -22,6 +22,11 @@ inline F8 load(const float* p) {
 inline I8 load(const int32_t* p) {
   return {vld1q_s32(p), vld1q_s32(p + 4)};
 }
+inline I8 load_bytes(const uint8_t* p) {
+  const uint16x8_t words = vmovl_u8(vld1_u8(p));
+  return {vreinterpretq_s32_u32(vmovl_u16(vget_low_u16(words))),
+          vreinterpretq_s32_u32(vmovl_u16(vget_high_u16(words)))};
+}
 inline void store(float* p, F8 a) {
   vst1q_f32(p, a.lo);
   vst1q_f32(p + 4, a.hi);
@@ -144,7 +149,7 @@ inline LaneMask16 lane_mask_16(uint8_t mask) {
   constexpr uint16_t kBit[8] = {1, 2, 4, 8, 16, 32, 64, 128};
   return vtstq_u16(vdupq_n_u16(mask), vld1q_u16(kBit));
 }
-// Adds eight values in [-255, 255] to 16-bit sums in the lanes of the mask.
+// Adds eight values in [-4080, 4080] to 16-bit sums in the lanes of the mask.
 inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   const int16x8_t packed = vcombine_s16(vmovn_s32(values.lo), vmovn_s32(values.hi));
   vst1q_u16(sums, vaddq_u16(vld1q_u16(sums), vandq_u16(vreinterpretq_u16_s16(packed), mask)));

@@ -49,8 +49,11 @@ int collect_packs(const uint32_t* ids, int width, int height, const RasterTriang
         for (uint32_t i = k; i < 8; ++i) mask |= (group[i] == group[k] ? 1u : 0u) << i;
         left &= ~mask;
         if (group[k] != 0)
-          packs[n++] = {triangles[group[k] - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y),
-                        static_cast<uint8_t>(mask)};
+          packs[n++] = {triangles[group[k] - 1],
+                        static_cast<uint8_t>(x),
+                        static_cast<uint8_t>(y),
+                        static_cast<uint8_t>(mask),
+                        {}};
       }
     }
   return n;
@@ -359,8 +362,8 @@ void sample_texture(const TextureSampler& texture, int n, const float* u, const 
   }
 }
 
-void accumulate(const LanePack* packs, int n, const float* color, const float* texels, const float* specular,
-                const uint8_t background[3], uint16_t* sums) {
+void accumulate(const LanePack* packs, int n, bool weighted, const float* color, const float* texels,
+                const float* specular, const uint8_t background[3], uint16_t* sums) {
   for (int p = 0; p < n; ++p) {
     for (int k = 0; k < 8; ++k) {
       if ((packs[p].mask >> k & 1) == 0) continue;
@@ -372,7 +375,7 @@ void accumulate(const LanePack* packs, int n, const float* color, const float* t
         if (specular != nullptr) value = value + specular[row];
         const int byte = static_cast<int>(std::min(std::max(value, 0.0f), 255.0f) + 0.5f);
         uint16_t& sum = sums[c * kTileSize * kTileSize + at];
-        sum = static_cast<uint16_t>(sum + byte - background[c]);
+        sum = static_cast<uint16_t>(sum + (byte - background[c]) * (weighted ? packs[p].weight[k] : 1));
       }
     }
   }

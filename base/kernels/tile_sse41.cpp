@@ -23,6 +23,10 @@ inline I8 load(const int32_t* p) {
   return {_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)),
           _mm_loadu_si128(reinterpret_cast<const __m128i*>(p + 4))};
 }
+inline I8 load_bytes(const uint8_t* p) {
+  const __m128i bytes = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
+  return {_mm_cvtepu8_epi32(bytes), _mm_cvtepu8_epi32(_mm_srli_si128(bytes, 4))};
+}
 inline void store(float* p, F8 a) {
   _mm_storeu_ps(p, a.lo);
   _mm_storeu_ps(p + 4, a.hi);
@@ -143,7 +147,7 @@ inline LaneMask16 lane_mask_16(uint8_t mask) {
   const __m128i bit = _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128);
   return _mm_cmpeq_epi16(_mm_and_si128(_mm_set1_epi16(mask), bit), bit);
 }
-// Adds eight values in [-255, 255] to 16-bit sums in the lanes of the mask.
+// Adds eight values in [-4080, 4080] to 16-bit sums in the lanes of the mask.
 inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   auto* at = reinterpret_cast<__m128i*>(sums);
   const __m128i packed = _mm_packs_epi32(values.lo, values.hi);

@@ -63,6 +63,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(pixel, upsample_h1v2_row),
     PAC_KERNEL(pixel, rgb_from_ycc420_row),
     PAC_KERNEL(tile, rasterize),
+    PAC_KERNEL(tile, rasterize_grid),
+    PAC_KERNEL(tile, collect_grid),
     PAC_KERNEL(tile, collect_packs),
     PAC_KERNEL(tile, interpolate),
     PAC_KERNEL(tile, light),
