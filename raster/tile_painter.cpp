@@ -18,6 +18,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
       std::fill_n(sums_[r] + c * kTilePixels, kTilePixels,
                   static_cast<uint16_t>(n_samples * input.background[c] + n_samples / 2));
   write_first_sample(input, area);
+  if (!wants_color(input, 0) && !wants_color(input, 1)) return;
   if (n_samples == 1) {
     shade_first_sample(input, area);
   } else if (!triangles_.empty()) {
@@ -26,6 +27,10 @@ void TilePainter::paint(const PaintInput& input, int tile) {
                  static_cast<int>(first));
   }
   write_color(input, area);
+}
+
+bool TilePainter::wants_color(const PaintInput& input, int rendering) {
+  return !input.color[rendering].empty() || !input.difference.empty();
 }
 
 SamplePosition TilePainter::position(const Area& area, SampleOffset offset) {
@@ -46,6 +51,7 @@ void TilePainter::shade_first_sample(const PaintInput& input, const Area& area) 
   const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
   if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
   for (int r = 0; r < n_renderings; ++r) {
+    if (!wants_color(input, r)) continue;
     if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
     n_packs_ = n_packs;
     shade(input, {r, 0, 1, position(area, input.pattern[0]), false});
@@ -68,8 +74,8 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   const SamplePosition corner{area.x * 256, area.y * 256};
   for (size_t i = 0; i < triangles_.size(); ++i)
     input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
-  shade_grid(input, area, 0, first_sample);
-  if (input.surfaces[1] != nullptr) shade_grid(input, area, 1, first_sample);
+  if (wants_color(input, 0)) shade_grid(input, area, 0, first_sample);
+  if (input.surfaces[1] != nullptr && wants_color(input, 1)) shade_grid(input, area, 1, first_sample);
 }
 
 // Every sample by itself; all at the pixel's center; or those of each quarter of the pixel at its center.

@@ -52,6 +52,7 @@ class TilePainter {
     SamplePosition origin;
     bool weighted;  // the packs' lanes stand for several samples
   };
+  static bool wants_color(const PaintInput& input, int rendering);
   static SamplePosition position(const Area& area, SampleOffset offset);
   void shade_first_sample(const PaintInput& input, const Area& area);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);

@@ -5,6 +5,7 @@
 //   build/release/bench/peers/llvmpipe_peer [threads [part of a row's name]]        (Debian: libosmesa6-dev)
 //
 // Supersampling in GL is a rendering at 4 times the width and height without the box filter, which favors the peer.
+// MSAA is its 4 samples a pixel, the most it has, with the resolve.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/osmesa.h>
 // After it:
@@ -157,7 +158,8 @@ class GlScene {
   std::vector<GLuint> textures_;
 };
 
-void bind_framebuffer(int width, int height) {
+// Its number; samples 0: without multisampling.
+GLuint bind_framebuffer(int width, int height, int samples) {
   GLuint buffers[2], frame;
   glGenRenderbuffers(2, buffers);
   glGenFramebuffers(1, &frame);
@@ -165,21 +167,54 @@ void bind_framebuffer(int width, int height) {
   const GLenum formats[2] = {GL_RGBA8, GL_DEPTH_COMPONENT24}, places[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
   for (int i = 0; i < 2; ++i) {
     glBindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
-    glRenderbufferStorage(GL_RENDERBUFFER, formats[i], width, height);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, formats[i], width, height);
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers[i]);
   }
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) std::puts("framebuffer incomplete");
   glViewport(0, 0, width, height);
   glEnable(GL_DEPTH_TEST);
+  return frame;
 }
+
+// What the peer does for a row, and what we do.
+enum class Kind : uint8_t {
+  plain,         // one sample a pixel, both
+  depth,         // the same without color
+  supersampled,  // 4x4, both
+  shaded_once,   // 4x4 against our 16 samples shaded once a pixel
+  multisampled,  // 4x MSAA against the same
+};
 
 struct Row {
   const char* name;
   const char* scene;
-  Shading shading;
   bool texture;
-  int samples;
+  Kind kind;
   int width, height;
+};
+
+// Draws and finishes; MSAA is resolved.
+class GlFrame {
+ public:
+  GlFrame(const Row& row) : row_(row) {
+    const int scale = row.kind == Kind::supersampled || row.kind == Kind::shaded_once ? 4 : 1;
+    if (row.kind == Kind::multisampled) resolved_ = bind_framebuffer(row.width, row.height, 0);
+    drawn_ = bind_framebuffer(scale * row.width, scale * row.height, row.kind == Kind::multisampled ? 4 : 0);
+    const GLboolean color = row.kind != Kind::depth;
+    glColorMask(color, color, color, color);
+  }
+  void draw(const GlScene& scene) const {
+    glBindFramebuffer(GL_FRAMEBUFFER, drawn_);
+    scene.draw();
+    if (row_.kind != Kind::multisampled) return;
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_);
+    glBlitFramebuffer(0, 0, row_.width, row_.height, 0, 0, row_.width, row_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glFinish();
+  }
+
+ private:
+  const Row& row_;
+  GLuint drawn_ = 0, resolved_ = 0;
 };
 
 void compare(const Row& row, int threads) {
@@ -194,21 +229,27 @@ void compare(const Row& row, int threads) {
   auto renderer = Renderer::create(row.width, row.height, options);
   RgbImage image(row.width, row.height);
   RenderQuality quality;
-  quality.shading = row.shading;
   quality.texture = row.texture;
-  quality.samples = row.samples;
+  if (row.kind == Kind::supersampled || row.kind == Kind::shaded_once || row.kind == Kind::multisampled)
+    quality.samples = 16;
+  if (row.kind == Kind::shaded_once || row.kind == Kind::multisampled) quality.shading_samples = 1;
   quality.cull_back_faces = true;
-  const int scale = row.samples == 16 ? 4 : row.samples == 4 ? 2 : 1;
-  bind_framebuffer(scale * row.width, scale * row.height);
+  RenderTargets targets;
+  DepthImage depth(row.width, row.height);
+  if (row.kind == Kind::depth)
+    targets.depth = depth.view();
+  else
+    targets.color = image.view();
+  const GlFrame frame(row);
   const GlScene gl(scene, camera, row.texture, !room);
   Timing peer, ours;
-  for (int i = 0; i < 2; ++i) gl.draw();
+  for (int i = 0; i < 2; ++i) frame.draw(gl);
   const clock_t start = clock();
   for (int i = 0; i < 8 || (i < 60 && clock() - start < CLOCKS_PER_SEC); ++i) {
-    time_frame(peer, [&] { gl.draw(); });
-    time_frame(ours, [&] { (void)renderer->render(scene, camera, quality, {image.view(), {}, {}}); });
+    time_frame(peer, [&] { frame.draw(gl); });
+    time_frame(ours, [&] { (void)renderer->render(scene, camera, quality, targets); });
   }
-  std::printf("%-28s %9.2f %9.2f %8.2fx %11.2f %9.2f\n", row.name, peer.cpu_ms, ours.cpu_ms, ours.cpu_ms / peer.cpu_ms,
+  std::printf("%-32s %9.2f %9.2f %8.2fx %11.2f %9.2f\n", row.name, peer.cpu_ms, ours.cpu_ms, ours.cpu_ms / peer.cpu_ms,
               peer.wall_ms, ours.wall_ms);
   std::fflush(stdout);
 }
@@ -225,19 +266,29 @@ int main(int argc, char** argv) {
     return 1;
   }
   std::printf("%s, %d thread(s)\n", reinterpret_cast<const char*>(glGetString(GL_RENDERER)), threads);
-  std::printf("%-28s %9s %9s %9s %11s %9s\n", "", "peer cpu", "ours cpu", "ratio", "peer wall", "ours wall");
-  constexpr Shading kGouraud = Shading::gouraud;
+  std::printf("%-32s %9s %9s %9s %11s %9s\n", "", "peer cpu", "ours cpu", "ratio", "peer wall", "ours wall");
   const Row rows[] = {
-      {"room Gouraud 512", "room", kGouraud, false, 1, 512, 512},
-      {"room trilinear 512", "room", kGouraud, true, 1, 512, 512},
-      {"room Gouraud 4x4 512", "room", kGouraud, false, 16, 512, 512},
-      {"room trilinear 4x4 512", "room", kGouraud, true, 16, 512, 512},
-      {"pin 75k Gouraud 512", "pin", kGouraud, false, 1, 512, 512},
-      {"pin 75k Gouraud 4x4 512", "pin", kGouraud, false, 16, 512, 512},
-      {"pin 3k Gouraud 512", "pin3k", kGouraud, false, 1, 512, 512},
-      {"room Gouraud 1080", "room", kGouraud, false, 1, 1920, 1080},
-      {"room trilinear 1080", "room", kGouraud, true, 1, 1920, 1080},
-      {"pin 75k Gouraud 1080", "pin", kGouraud, false, 1, 1920, 1080},
+      {"room depth 512", "room", false, Kind::depth, 512, 512},
+      {"room Gouraud 512", "room", false, Kind::plain, 512, 512},
+      {"room trilinear 512", "room", true, Kind::plain, 512, 512},
+      {"room Gouraud 4x4 512", "room", false, Kind::supersampled, 512, 512},
+      {"room trilinear 4x4 512", "room", true, Kind::supersampled, 512, 512},
+      {"room Gouraud once/4x4 512", "room", false, Kind::shaded_once, 512, 512},
+      {"room Gouraud once/MSAA4 512", "room", false, Kind::multisampled, 512, 512},
+      {"room trilinear once/4x4 512", "room", true, Kind::shaded_once, 512, 512},
+      {"room trilinear once/MSAA4 512", "room", true, Kind::multisampled, 512, 512},
+      {"pin 75k depth 512", "pin", false, Kind::depth, 512, 512},
+      {"pin 75k Gouraud 512", "pin", false, Kind::plain, 512, 512},
+      {"pin 75k Gouraud 4x4 512", "pin", false, Kind::supersampled, 512, 512},
+      {"pin 75k Gouraud once/4x4 512", "pin", false, Kind::shaded_once, 512, 512},
+      {"pin 75k Gouraud once/MSAA4 512", "pin", false, Kind::multisampled, 512, 512},
+      {"pin 3k Gouraud 512", "pin3k", false, Kind::plain, 512, 512},
+      {"pin 3k Gouraud once/4x4 512", "pin3k", false, Kind::shaded_once, 512, 512},
+      {"room Gouraud 1080", "room", false, Kind::plain, 1920, 1080},
+      {"room trilinear 1080", "room", true, Kind::plain, 1920, 1080},
+      {"room Gouraud once/4x4 1080", "room", false, Kind::shaded_once, 1920, 1080},
+      {"room trilinear once/4x4 1080", "room", true, Kind::shaded_once, 1920, 1080},
+      {"pin 75k Gouraud 1080", "pin", false, Kind::plain, 1920, 1080},
   };
   const char* filter = argc > 2 ? argv[2] : "";
   for (const Row& row : rows)

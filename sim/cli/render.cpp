@@ -24,7 +24,7 @@ struct Request {
   bool texture = true;
   Shading shading = Shading::gouraud;
   sim::Lighting lighting = sim::Lighting::full;
-  int samples = 16;
+  int samples = 16, shading_samples = 0;
   sim::Model tessellation = sim::Model::fine;
 };
 
@@ -56,6 +56,8 @@ void declare(Options& options, Request& request) {
                                 "(the baked solution)");
   options.choice<int>("--samples", request.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "a pixel (16; quality low: the split's)");
+  options.choice<int>("--shading-samples", request.shading_samples, {{"0", 0}, {"1", 1}, {"4", 4}},
+                      "places where a pixel of several samples is shaded; 0: at each sample (0)");
   options.choice<sim::Model>("--tessellation", request.tessellation,
                              {{"fine", sim::Model::fine}, {"coarse", sim::Model::coarse}}, "which of two models");
   options.text("--depth", "OUT.pfm", request.depth_out, "window depth, 0 near to 1 far and background");
@@ -73,6 +75,7 @@ Result<sim::Split> quality_of(const Options& options, const Request& request, co
   if (options.given("--texture")) quality.texture = request.texture;
   if (options.given("--shading")) quality.shading = request.shading;
   if (options.given("--samples")) quality.samples = request.samples;
+  quality.shading_samples = request.shading_samples;
   if (options.given("--tessellation")) split.low_model = request.tessellation;
   if (options.given("--lighting")) {
     const bool full = request.lighting == sim::Lighting::full;
