@@ -133,6 +133,8 @@ Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const Re
   uint32_t first_plain = kNone;
   float bias = 0;  // -log2(sqrt(places where a pixel is shaded))
   for (int n = quality.shading_samples == 0 ? quality.samples : quality.shading_samples; n > 1; n /= 4) bias -= 1.0f;
+  // A pixel's one texel should look like the mean of finer ones: the blur of the filter is less than the pixel's own.
+  if (quality.shading_samples != 0) bias -= 0.75f;
   for (uint32_t i = 0; i < surfaces.size(); ++i) {
     const Material& material = scene.materials[i];
     Surface& surface = surfaces[i];

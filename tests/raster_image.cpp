@@ -24,12 +24,13 @@ struct Case {
   uint64_t golden;  // color, depth and id
 };
 
-RenderQuality quality(Shading shading, bool texture, int samples, bool cull = false) {
+RenderQuality quality(Shading shading, bool texture, int samples, bool cull = false, int shading_samples = 0) {
   RenderQuality q;
   q.shading = shading;
   q.texture = texture;
   q.samples = samples;
   q.cull_back_faces = cull;
+  q.shading_samples = shading_samples;
   return q;
 }
 
@@ -56,6 +57,12 @@ std::vector<Case> cases() {
       {"room Gouraud", test_scenes::room(), room, quality(Shading::gouraud, false, 1), 96, 80, 0xf78c266b6df94edeu});
   list.push_back(
       {"room trilinear", test_scenes::room(), room, quality(Shading::gouraud, true, 1), 96, 80, 0xb79479ed08c10b76u});
+  list.push_back({"room trilinear, 16 samples shaded once", test_scenes::room(), room,
+                  quality(Shading::gouraud, true, 16, false, 1), 96, 80, 0x6366fff7958628fbu});
+  list.push_back({"room Phong, 64 samples shaded at four places", test_scenes::room(), room,
+                  quality(Shading::phong, true, 64, false, 4), 60, 50, 0xf34f90a4832d0a89u});
+  list.push_back({"room Gouraud, 4 samples shaded once", test_scenes::room(), room,
+                  quality(Shading::gouraud, false, 4, true, 1), 70, 40, 0x8f4a93ba0eca60bdu});
   list.push_back({"room bilinear clamped", room_with(Filter::bilinear, Wrap::clamp), room,
                   quality(Shading::gouraud, true, 1), 70, 40, 0x5b4afc533e91e006u});
   list.push_back({"room nearest, 4 samples", room_with(Filter::nearest, Wrap::repeat), room,
