@@ -54,6 +54,13 @@ Result<StreamTables> StreamTables::for_pictures(std::span<const ConstRgbView> pi
   return StreamTables(std::make_shared<const State>(state));
 }
 
+StreamTables::StreamTables(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+StreamTables::StreamTables(const StreamTables&) = default;
+StreamTables::StreamTables(StreamTables&&) noexcept = default;
+StreamTables& StreamTables::operator=(const StreamTables&) = default;
+StreamTables& StreamTables::operator=(StreamTables&&) noexcept = default;
+StreamTables::~StreamTables() = default;
+
 const QuantTables& StreamTables::steps() const {
   return state_->steps;
 }

@@ -21,6 +21,11 @@ class StreamTables {
   // the pictures together, yet have a code for whatever another one may bring. At least one picture. Errors: as
   // encode().
   static Result<StreamTables> for_pictures(std::span<const ConstRgbView> pictures, const EncodeOptions& options);
+  StreamTables(const StreamTables&);
+  StreamTables(StreamTables&&) noexcept;
+  StreamTables& operator=(const StreamTables&);
+  StreamTables& operator=(StreamTables&&) noexcept;
+  ~StreamTables();
 
   const QuantTables& steps() const;
   // SOI, DQT, DHT, EOI: what the decoder must see before the first image.
@@ -30,7 +35,7 @@ class StreamTables {
   const State& state() const { return *state_; }
 
  private:
-  explicit StreamTables(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  explicit StreamTables(std::shared_ptr<const State> state);
   std::shared_ptr<const State> state_;
 };
 

@@ -175,6 +175,7 @@ Result<CoefficientsRead> read_coefficients(std::span<const uint8_t> file, const 
   const Headers& headers = decoder->headers();
   CoefficientsRead out;
   out.failure = decoder->first_failure();
+  out.errors = decoder->errors();
   out.warnings = decoder->warnings();
   out.image.width = headers.frame.width;
   out.image.height = headers.frame.height;

@@ -37,7 +37,7 @@ struct CoefficientImage {
 struct CoefficientsRead {
   CoefficientImage image;
   std::optional<Failure> failure;  // lenient: the first thing wrong
-  int warnings = 0;
+  int errors = 0, warnings = 0;    // as LenientImage
 };
 
 // Of a baseline, extended sequential or progressive file. options: limits and isa alone count. Errors: as decode(), or

@@ -25,7 +25,7 @@ Result<std::unique_ptr<ScanDecoder>> open_decoder(std::span<const uint8_t> bytes
 }
 
 DecodeReport report_of(const ScanDecoder& decoder) {
-  return {decoder.width(), decoder.height(), decoder.first_failure(), decoder.warnings()};
+  return {decoder.width(), decoder.height(), decoder.first_failure(), decoder.errors(), decoder.warnings()};
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const Decode
   PAC_TRY(const auto decoder, open_decoder(bytes, options, request_of(options)));
   PAC_TRY(RgbImage image, RgbImage::create(decoder->width(), decoder->height(), options.limits));
   PAC_CHECK(decoder->decode(rgb_target(image.view()), true));
-  return LenientImage{std::move(image), decoder->first_failure(), decoder->warnings()};
+  return LenientImage{std::move(image), decoder->first_failure(), decoder->errors(), decoder->warnings()};
 }
 
 Result<LenientImage> decode_lenient(std::span<const uint8_t> bytes, const Limits& limits, Isa isa) {

@@ -219,7 +219,8 @@ PictureSize scaled_size(const Info& info, int scale_denominator);
 struct LenientImage {
   RgbImage image;                  // samples that the file does not hold are gray (128 in each component)
   std::optional<Failure> failure;  // the first thing wrong; empty: the file is sound
-  int warnings = 0;                // things wrong, and oddities that strict decoding tolerates
+  int errors = 0;                  // things wrong: damaged intervals, missing scans, ...
+  int warnings = 0;                // oddities that harm nothing and that strict decoding tolerates
 };
 // As decode(), but keeps what is there when the entropy-coded data or what follows it is damaged or missing; damage
 // between restart markers costs only those intervals. Errors: as decode, in the headers before the first scan.

@@ -19,12 +19,13 @@ namespace pac::jpeg {
 struct Damage {
   bool lenient = false;
   std::optional<Failure> first;
-  int warnings = 0;  // oddities, and in lenient mode failures
+  int errors = 0;    // passed over in lenient mode
+  int warnings = 0;  // oddities that harm nothing
   // In lenient mode a failure is remembered and passed over.
   Result<void> tolerate(const Failure& failure) {
     if (!lenient) return failure;
     if (!first) first = failure;
-    warnings += 1;
+    errors += 1;
     return {};
   }
 };

@@ -47,11 +47,12 @@ enum class Damaged : uint8_t {
   keep,  // lenient: what the file still holds, as decode_lenient() has it
 };
 
-// How it went. `failure` and errors among the `warnings` only with Damaged::keep.
+// How it went. `failure` and `errors` only with Damaged::keep.
 struct DecodeReport {
   int width = 0, height = 0;       // pixels delivered: of the crop, or the scaled picture
   std::optional<Failure> failure;  // the first thing wrong
-  int warnings = 0;                // things wrong, and oddities that harm nothing
+  int errors = 0;                  // things wrong
+  int warnings = 0;                // oddities that harm nothing
 };
 
 // Into the caller's pixels; `out` has the crop's size or that of scaled_size(). Errors: as decode; bad_argument

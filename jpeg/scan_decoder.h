@@ -47,6 +47,7 @@ class ScanDecoder {
   std::vector<int16_t> take_levels(int c) { return std::move(levels_[c]); }
   const uint16_t* steps(int c) const { return steps_[c]; }
   const std::optional<Failure>& first_failure() const { return damage_.first; }
+  int errors() const { return damage_.errors; }
   int warnings() const { return damage_.warnings + reader_.headers().warnings; }
 
  private:

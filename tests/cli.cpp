@@ -281,6 +281,32 @@ TEST_CASE("a damaged JPEG file is refused, or kept as far as it goes with --leni
   CHECK(folder.pac("jpeg decode a.jpg --lenient -o sound.png").code == 0);
 }
 
+TEST_CASE("jpeg decode scales and crops, transcode keeps the picture, encode takes factors and metadata") {
+  const CliFolder folder;
+  REQUIRE(folder.pac("render letter --width 100 --height 60 --samples 1 -o a.png").code == 0);
+  REQUIRE(folder.pac("jpeg encode a.png --sampling 4x1,1x1,1x1 --comment hello --dpi 300 -o a.jpg").code == 0);
+  const auto info = json(folder.pac("jpeg info a.jpg --json"));
+  CHECK(info.at("components[0].horizontal_sampling") == "4");
+  CHECK(info.at("density_x") == "300");
+  const auto quarter = json(folder.pac("jpeg decode a.jpg --scale 1/4 --crop 10x8+3+2 -o b.png --json"));
+  CHECK(number(quarter, "width") == 10);
+  CHECK(number(quarter, "height") == 8);
+  CHECK(folder.pac("jpeg decode a.jpg --crop 10x8+95+2 -o c.png").code == 1);
+  check_usage_error(folder.pac("jpeg decode a.jpg --crop 10x8 -o c.png"), "--crop is WxH+X+Y");
+  check_usage_error(folder.pac("jpeg encode a.png --sampling 4x4,1x1,1x1 -o n.jpg"), "at most 10 blocks");
+  CHECK(contains(folder.pac("jpeg decode a.jpg --icc p.icc -o c.png").err, "no whole color profile"));
+
+  REQUIRE(folder.pac("jpeg transcode a.jpg --restart 3 -o t.jpg").code == 0);
+  CHECK(contains(folder.read("t.jpg"), "hello"));
+  REQUIRE(folder.pac("jpeg transcode a.jpg --drop-metadata -o d.jpg").code == 0);
+  CHECK(!contains(folder.read("d.jpg"), "hello"));
+  REQUIRE(folder.pac("jpeg decode a.jpg -o a.ppm").code == 0);
+  REQUIRE(folder.pac("jpeg decode t.jpg -o t.ppm").code == 0);
+  CHECK(folder.read("a.ppm") == folder.read("t.ppm"));
+  REQUIRE(folder.pac("jpeg encode a.png --metadata-from a.jpg -o m.jpg").code == 0);
+  CHECK(contains(folder.read("m.jpg"), "hello"));
+}
+
 TEST_CASE("meshes go through the geometry codec and come back as PLY") {
   const CliFolder folder;
   const auto coded = json(folder.pac("geom encode cubes -o cubes.pgc --json"));

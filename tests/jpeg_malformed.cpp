@@ -184,7 +184,8 @@ TEST_CASE("lenient decoding keeps what a damaged file holds and says what is wro
   REQUIRE(damaged.ok());
   REQUIRE(damaged->failure.has_value());
   CHECK(damaged->failure->error == Error::corrupt);
-  CHECK(damaged->warnings >= 1);
+  CHECK(damaged->errors == 1);
+  CHECK(damaged->warnings == 1);        // what is left of the data before EOI
   const int bright = 128 + 7 * 16 / 8;  // DC level 7, step 16, a block's mean is an eighth of its DC
   CHECK(damaged->image.pixel(0, 0)[0] == bright);
   CHECK(damaged->image.pixel(15, 7)[1] == bright);
@@ -204,7 +205,15 @@ TEST_CASE("lenient decoding keeps what a damaged file holds and says what is wro
   const auto sound = jpeg::decode_lenient(sound_gray().bytes);
   REQUIRE(sound.ok());
   CHECK_FALSE(sound->failure.has_value());
+  CHECK(sound->errors == 0);
   CHECK(sound->warnings == 0);
+  // Bytes between segments harm nothing: a warning, no error.
+  const auto odd =
+      jpeg::decode_lenient(start().raw({1, 2, 3}).dqt().sof(8, 8).small_tables().sos().bits("00").eoi().bytes);
+  REQUIRE(odd.ok());
+  CHECK_FALSE(odd->failure.has_value());
+  CHECK(odd->errors == 0);
+  CHECK(odd->warnings == 1);
   CHECK_FALSE(jpeg::decode_lenient(start().bytes).ok());
 }
 

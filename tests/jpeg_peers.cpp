@@ -7,9 +7,11 @@
 #include "base/file_io.h"
 #include "base/image_io.h"
 #include "base/metrics.h"
+#include "jpeg/coefficient_io.h"
 #include "jpeg/jpeg.h"
 #include "tests/support/jpeg_file.h"
 #include "tests/support/peer.h"
+#include "tests/support/stb_jpeg.h"
 
 namespace pac::test {
 namespace {
@@ -67,6 +69,37 @@ TEST_CASE("ffmpeg decodes our files to pictures close to ours") {
     // Its chroma upsampling repeats samples, so edges differ; luma does not.
     REQUIRE(psnr_luma(jpeg::decode(bytes)->view(), read_picture(dir.file("f.ppm")).view()) > 35.0);
   }
+}
+
+// Its chroma filter is another one, its luma is as exact as ours.
+TEST_CASE("stb_image decodes our files, of any sampling, and those that transcoding made") {
+  if (!have_stb()) return;
+  const RgbImage image = test_image(97, 71);
+  const jpeg::SamplingFactors kinds[] = {{},
+                                         {{2, 1, 1}, {2, 1, 1}},
+                                         {{2, 1, 1}, {1, 1, 1}},
+                                         {{1, 1, 1}, {2, 1, 1}},
+                                         {{4, 1, 1}, {1, 1, 1}},
+                                         {{4, 1, 1}, {2, 1, 1}},
+                                         {{2, 1, 1}, {2, 2, 2}}};
+  for (const auto effort : {jpeg::Effort::fast, jpeg::Effort::normal, jpeg::Effort::best}) {
+    for (const auto& sampling : kinds) {
+      jpeg::EncodeOptions options = jpeg::options_for(effort, jpeg::Tune::visual, 85);
+      options.sampling = sampling;
+      options.restart_interval_mcus = effort == jpeg::Effort::normal ? 5 : 0;
+      const auto bytes = *jpeg::encode(image.view(), options);
+      const RgbImage theirs = stb_decode(bytes), ours = *jpeg::decode(bytes);
+      REQUIRE(theirs.width() == 97);
+      REQUIRE(psnr_luma(ours.view(), theirs.view()) > 35.0);
+      if (sampling.h[0] == 1 && sampling.v[0] == 1) REQUIRE(max_difference(ours.view(), theirs.view()) <= 3);
+      const auto again = *jpeg::write_coefficients(jpeg::read_coefficients(bytes)->image, {jpeg::Huffman::optimal, 3});
+      REQUIRE(max_difference(stb_decode(again).view(), theirs.view()) == 0);
+    }
+  }
+  jpeg::EncodeOptions gray;
+  gray.subsampling = jpeg::Subsampling::gray;
+  const auto bytes = *jpeg::encode(image.view(), gray);
+  CHECK(max_difference(jpeg::decode(bytes)->view(), stb_decode(bytes).view()) <= 2);
 }
 
 TEST_CASE("with the same choices our files are cjpeg's byte for byte") {

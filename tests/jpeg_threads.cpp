@@ -115,6 +115,7 @@ TEST_CASE("what is wrong with a damaged file does not depend on the number of th
     const auto two = jpeg::decode_lenient(damaged, options);
     REQUIRE(one.ok() == two.ok());
     if (!one.ok()) continue;
+    REQUIRE(one->errors == two->errors);
     REQUIRE(one->warnings == two->warnings);
     REQUIRE(one->failure.has_value() == two->failure.has_value());
     if (one->failure) REQUIRE(one->failure->byte_offset == two->failure->byte_offset);

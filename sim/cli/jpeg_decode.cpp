@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "jpeg/jpeg.h"
+#include "jpeg/metadata.h"
 #include "sim/cli/command.h"
 #include "sim/cli/image_files.h"
 
@@ -28,6 +29,13 @@ int print_summary(const Options& options, const RgbImage& image) {
   return print_json(json);
 }
 
+int write_profile(const std::string& in, const std::string& out, std::span<const uint8_t> bytes) {
+  const auto found = jpeg::read_metadata(bytes);
+  if (!found.ok()) return data_error(in, found.failure());
+  if (found->metadata.icc_profile.empty()) return data_error(in, "holds no whole color profile");
+  return write_output(out, found->metadata.icc_profile);
+}
+
 // What could be read is written, then the damage is reported as in strict mode.
 int decode_damaged(const Options& options, const std::string& in, const std::string& out,
                    std::span<const uint8_t> bytes, const jpeg::DecodeOptions& decode) {
@@ -43,7 +51,7 @@ int decode_damaged(const Options& options, const std::string& in, const std::str
 int run_jpeg_decode(Args args) {
   Options options("jpeg decode", "writes a JPEG file's picture as PNG, PPM or PGM",
                   "pac jpeg decode room.jpg -o room-decoded.png");
-  std::string in, out, crop;
+  std::string in, out, crop, icc;
   bool lenient = false;
   jpeg::DecodeOptions decode;
   options.positional("IN.jpg", in, "- is stdin");
@@ -51,6 +59,7 @@ int run_jpeg_decode(Args args) {
   options.flag("--lenient", lenient, "write what a damaged file holds; the exit code is 1 still");
   options.choice<int>("--scale", decode.scale_denominator, {{"1", 1}, {"1/2", 2}, {"1/4", 4}, {"1/8", 8}},
                       "of the sides, rounded up (1)");
+  options.text("--icc", "FILE", icc, "write the color profile, too");
   options.text("--crop", "WxH+X+Y", crop, "only that part of the (scaled) picture; what follows it is not read");
   if (const auto code = options.parse(args)) return *code;
   decode.isa = options.isa;
@@ -63,6 +72,8 @@ int run_jpeg_decode(Args args) {
   if (const std::string problem = picture_name_problem(out); !problem.empty()) return options.usage_error(problem);
   const auto bytes = read_file(in);
   if (!bytes.ok()) return data_error(in, bytes.failure());
+  if (!icc.empty())
+    if (const int code = write_profile(in, icc, *bytes); code != kDone) return code;
   if (lenient) return decode_damaged(options, in, out, *bytes, decode);
   const auto image = jpeg::decode(*bytes, decode);
   if (!image.ok()) return data_error(in, image.failure());

@@ -36,7 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto shared = pac::jpeg::decode_lenient(bytes, two_threads);
   require(shared.ok() == lenient.ok());
   if (shared.ok()) {
-    require(pac::hash_pixels(shared->image.view()) == lenient_hash && shared->warnings == lenient->warnings);
+    require(pac::hash_pixels(shared->image.view()) == lenient_hash && shared->warnings == lenient->warnings &&
+            shared->errors == lenient->errors);
     require(shared->failure.has_value() == lenient->failure.has_value());
   }
   if (strict.ok()) {
