@@ -6,23 +6,13 @@
 #include <utility>
 
 #include "base/kernels/kernels.h"
-#include "sim/warp_filter.h"
+#include "sim/row_carrier.h"
 
 namespace pac::sim {
 
 namespace {
 
-constexpr int kPhaseBits = 6;
-static_assert(1 << kPhaseBits == kWarpPhases);
-constexpr int kTapsBefore = 2, kTapsAfter = kWarpTaps - 1 - kTapsBefore;
-
-// Depths of one surface at two pixels belong together where u differs by less than this share. A floor seen at a
-// grazing angle changes by about 1 % a pixel; things that hide each other are farther apart.
-constexpr float kDepthTolerance = 1.0f / 16;
-
-bool same_depth(float a, float b) {
-  return std::fabs(a - b) <= kDepthTolerance * std::fmax(a, b);
-}
+constexpr int kTapsAfter = kWarpTaps - 1 - kWarpTapsBefore;
 
 uint8_t clamped(int value) {
   return static_cast<uint8_t>(std::clamp(value, 0, 255));
@@ -51,7 +41,7 @@ void find_smooth(SurfaceMap& map, GrayImage& jumps) {
   GrayImage across(width, height);
   std::vector<uint8_t> padded(static_cast<size_t>(width) + kWarpTaps);
   for (int y = 0; y < height; ++y) {
-    std::memcpy(padded.data() + kTapsBefore, jumps.row(y), static_cast<size_t>(width));
+    std::memcpy(padded.data() + kWarpTapsBefore, jumps.row(y), static_cast<size_t>(width));
     uint8_t* out = across.row(y);
     for (int x = 0; x < width; ++x) {
       uint8_t any = 0;
@@ -62,7 +52,7 @@ void find_smooth(SurfaceMap& map, GrayImage& jumps) {
   for (int y = 0; y < height; ++y) {
     uint8_t* out = map.smooth.row(y);
     std::memset(out, 0, static_cast<size_t>(width));
-    for (int row = std::max(0, y - kTapsBefore); row <= std::min(height - 1, y + kTapsAfter); ++row)
+    for (int row = std::max(0, y - kWarpTapsBefore); row <= std::min(height - 1, y + kTapsAfter); ++row)
       for (int x = 0; x < width; ++x) out[x] |= across.row(row)[x];
     for (int x = 0; x < width; ++x) out[x] ^= 1;
   }
@@ -76,59 +66,6 @@ void make_map(int width, int height, SurfaceMap& map) {
 PlaneView<const uint8_t> plane(const Frame420& frame, int component) {
   return component == 0 ? frame.y.view() : component == 1 ? frame.cb.view() : frame.cr.view();
 }
-
-// What a pixel looks for in the frame before.
-struct Wanted {
-  uint32_t surface;
-  float u;
-};
-
-// One point near an edge: taps on other surfaces, behind others or outside the picture are replaced by the mean of the
-// visible ones among the nearest four. False where those four show nothing of it.
-class CarefulFilter {
- public:
-  CarefulFilter(const BorderedPlane& plane, const SurfaceMap& map) : plane_(plane), map_(map) {}
-
-  bool filter(int x_64, int y_64, const Wanted& wanted, int16_t& out) const {
-    const int x = x_64 >> kPhaseBits, y = y_64 >> kPhaseBits;
-    const int fx = x_64 & (kWarpPhases - 1), fy = y_64 & (kWarpPhases - 1);
-    int32_t stand_in;
-    if (!nearest_mean(x, y, fx, fy, wanted, stand_in)) return false;
-    const int16_t *taps_x = &kWarpFilter[static_cast<size_t>(fx * kWarpTapStride)],
-                  *taps_y = &kWarpFilter[static_cast<size_t>(fy * kWarpTapStride)];
-    int32_t sum = 1 << 13;
-    for (int k = 0; k < kWarpTaps; ++k)
-      for (int j = 0; j < kWarpTaps; ++j) {
-        const int tx = x + j - kTapsBefore, ty = y + k - kTapsBefore;
-        sum += taps_x[j] * taps_y[k] * (visible(tx, ty, wanted) ? plane_.row(ty)[tx] : stand_in);
-      }
-    out = static_cast<int16_t>(std::clamp(sum >> 14, -255, 255));
-    return true;
-  }
-
- private:
-  bool visible(int x, int y, const Wanted& wanted) const {
-    if (x < 0 || y < 0 || x >= plane_.width() || y >= plane_.height()) return false;
-    return map_.surface.row(y)[x] == wanted.surface && same_depth(map_.u.row(y)[x], wanted.u);
-  }
-
-  bool nearest_mean(int x, int y, int fx, int fy, const Wanted& wanted, int32_t& mean) const {
-    int32_t weight = 0, sum = 0;
-    for (int k = 0; k < 2; ++k)
-      for (int j = 0; j < 2; ++j) {
-        if (!visible(x + j, y + k, wanted)) continue;
-        const int w = (j == 0 ? kWarpPhases - fx : fx) * (k == 0 ? kWarpPhases - fy : fy);
-        weight += w;
-        sum += w * plane_.row(y + k)[x + j];
-      }
-    if (weight == 0) return false;
-    mean = sum >= 0 ? (sum + weight / 2) / weight : -((-sum + weight / 2) / weight);
-    return true;
-  }
-
-  const BorderedPlane& plane_;
-  const SurfaceMap& map_;
-};
 
 }  // namespace
 
@@ -194,49 +131,23 @@ void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const 
   }
 }
 
-void ModelPredictor::carry(int component, const Frame420& base) {
-  const bool chroma = component > 0;
-  const BorderedPlane& kept = kept_[component];
-  const SurfaceMap &now = now_[chroma ? 1 : 0], &before = before_[chroma ? 1 : 0];
-  const CarefulFilter careful(kept, before);
-  GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
-  const int width = kept.width(), height = kept.height(), step = chroma ? 2 : 1;
-  const auto n = static_cast<size_t>(width);
-  std::vector<int32_t> offset(n), column(n);
-  std::vector<uint8_t> phase_x(n), phase_y(n);
-  std::vector<int16_t> picked(n), carried(n);
+void ModelPredictor::carry(bool chroma, const Frame420& base) {
+  const size_t level = chroma ? 1 : 0;
+  RowCarrier carrier(now_[level], before_[level], flow_, chroma, *kernels_for(isa_));
+  const int width = kept_[level].width(), height = kept_[level].height();
+  std::vector<int16_t> carried(static_cast<size_t>(width));
   uint64_t found = 0;
   for (int y = 0; y < height; ++y) {
-    const int32_t *flow_x = flow_.x_64.row(y * step), *flow_y = flow_.y_64.row(y * step);
-    const float* flow_u = flow_.u_before.row(y * step);
-    size_t count = 0;
-    for (int x = 0; x < width; ++x) {
-      carried[static_cast<size_t>(x)] = 0;
-      if (flow_x[x * step] == kWarpNowhere) continue;
-      // A chroma sample lies between four luma samples; half the position of the first of them is its own.
-      const int x_64 = chroma ? flow_x[x * step] >> 1 : flow_x[x], y_64 = chroma ? flow_y[x * step] >> 1 : flow_y[x];
-      const int near_x = (x_64 + kWarpPhases / 2) >> kPhaseBits, near_y = (y_64 + kWarpPhases / 2) >> kPhaseBits;
-      if (near_x < 0 || near_y < 0 || near_x >= width || near_y >= height) continue;
-      const Wanted wanted{now.surface.row(y)[x], flow_u[x * step]};
-      const int floor_x = x_64 >> kPhaseBits, floor_y = y_64 >> kPhaseBits;
-      const bool plain = before.smooth.row(std::max(0, floor_y))[std::max(0, floor_x)] != 0 &&
-                         before.surface.row(near_y)[near_x] == wanted.surface &&
-                         same_depth(before.u.row(near_y)[near_x], wanted.u);
-      if (!plain) {
-        found += careful.filter(x_64, y_64, wanted, carried[static_cast<size_t>(x)]) ? 1 : 0;
-        continue;
-      }
-      offset[count] = static_cast<int32_t>((floor_y - kTapsBefore) * kept.stride() + floor_x - kTapsBefore);
-      phase_x[count] = static_cast<uint8_t>(x_64 & (kWarpPhases - 1));
-      phase_y[count] = static_cast<uint8_t>(y_64 & (kWarpPhases - 1));
-      column[count++] = x;
+    carrier.find(y, kept_[level].stride());
+    found += carrier.found();
+    for (int component = chroma ? 1 : 0; component <= (chroma ? 2 : 0); ++component) {
+      std::fill(carried.begin(), carried.end(), int16_t{0});
+      carrier.fetch(kept_[component], carried.data());
+      GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
+      const uint8_t* from = plane(base, component).row(y);
+      uint8_t* to = target.row(y);
+      for (int x = 0; x < width; ++x) to[x] = clamped(from[x] + carried[static_cast<size_t>(x)]);
     }
-    kernels_for(isa_)->warp.filter_points(kept.row(0), kept.stride(), kWarpFilter.data(), offset.data(), phase_x.data(),
-                                          phase_y.data(), count, picked.data());
-    for (size_t i = 0; i < count; ++i) carried[static_cast<size_t>(column[i])] = picked[i];
-    found += count;
-    const uint8_t* from = plane(base, component).row(y);
-    for (size_t x = 0; x < n; ++x) target.row(y)[x] = clamped(from[x] + carried[x]);
   }
   if (!chroma) stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width) * height);
 }
@@ -248,7 +159,8 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
   stats_ = {};
   if (has_kept_) {
     reproject(Reprojection(camera, camera_, width_, height_, sample_x_, sample_y_), depth, flow_, isa_);
-    for (int component = 0; component < 3; ++component) carry(component, base);
+    carry(false, base);
+    carry(true, base);
   } else {
     for (int component = 0; component < 3; ++component) {
       const PlaneView<const uint8_t> from = plane(base, component);

@@ -75,9 +75,8 @@ class ModelPredictor {
   const PredictionStats& stats() const { return stats_; }
 
  private:
-  struct Points;  // of the plain filter
   void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma, SurfaceMap& chroma);
-  void carry(int component, const Frame420& base);
+  void carry(bool chroma, const Frame420& base);
 
   int width_, height_;
   std::vector<uint32_t> surfaces_;

@@ -13,10 +13,24 @@ struct ReprojectionRow {
   float origin[4], per_pixel[4], per_depth[4];
 };
 
-constexpr int kWarpTaps = 6;       // of the filter, in each direction: at -2 .. +3 from the position's floor
+constexpr int kWarpTaps = 6;  // of the filter, in each direction: at -2 .. +3 from the position's floor
+constexpr int kWarpTapsBefore = 2;
 constexpr int kWarpPhases = 64;    // a pixel
 constexpr int kWarpTapStride = 8;  // coefficients of one phase in the table; the last two are 0
 constexpr int32_t kWarpNowhere = INT32_MIN;
+
+// A point near the edge of what it shows, whose taps all lie inside the picture. Offsets are of its tap (-2, -2).
+struct EdgePoint {
+  int32_t plane_offset, map_offset;
+  uint32_t surface;  // that it shows
+  float u;           // 1 - depth there
+  int16_t stand_in;  // for taps that show something else, -255..255
+};
+
+// Two points of a surface belong together where their u differ by at most this share of the larger.
+constexpr float kWarpDepthTolerance = 1.0f / 16;
+
+constexpr int kEdgePatch = kWarpTaps * kWarpTapStride;  // samples of one point's patch: 6 rows of 8
 
 struct WarpKernels {
   // Positions of n pixels, any n >= 0: x_64 = floor(64 x / w + 0.5), clamped to +-2^24 before (y_64 alike), and
@@ -33,6 +47,13 @@ struct WarpKernels {
   // Reads 8 samples of each of the 6 rows.
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
                         const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out);
+
+  // The samples around n points, point i in patches[i * kEdgePatch ...], as filter_points wants them with a stride of
+  // 8: where the maps (rows `map_stride` apart) hold the point's surface, and a u with |u - point's| <=
+  // kWarpDepthTolerance * (the larger one), the plane's; elsewhere the stand_in. Columns 6 and 7 hold anything. Reads 8
+  // entries of each of the 6 rows.
+  void (*cut_patches)(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u,
+                      ptrdiff_t map_stride, const EdgePoint* points, size_t n, int16_t* patches);
 };
 
 // One per instruction set: overwrites the entries that it improves.

@@ -47,11 +47,28 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
         filter_point(plane + offset[i], stride, taps + kWarpTapStride * phase_x[i], taps + kWarpTapStride * phase_y[i]);
 }
 
+void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u, ptrdiff_t map_stride,
+                 const EdgePoint* points, size_t n, int16_t* patches) {
+  for (size_t i = 0; i < n; ++i) {
+    const EdgePoint& point = points[i];
+    for (int k = 0; k < kWarpTaps; ++k)
+      for (int j = 0; j < kWarpTaps; ++j) {
+        const ptrdiff_t at = point.map_offset + k * map_stride + j;
+        const float larger = u[at] > point.u ? u[at] : point.u;
+        const bool same_depth = std::fabs(u[at] - point.u) <= kWarpDepthTolerance * larger;
+        const bool is_shown = surface[at] == point.surface && same_depth;
+        patches[static_cast<ptrdiff_t>(i) * kEdgePatch + k * kWarpTapStride + j] =
+            is_shown ? plane[point.plane_offset + k * stride + j] : point.stand_in;
+      }
+  }
+}
+
 }  // namespace
 
 void fill_warp_scalar(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.filter_points = filter_points;
+  table.cut_patches = cut_patches;
 }
 
 }  // namespace pac

@@ -96,11 +96,41 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
   }
 }
 
+// 0xFFFFFFFF where four taps show the point's surface at its depth.
+inline __m128i shown(const uint32_t* surface, const float* u, const EdgePoint& point) {
+  const __m128 wanted = _mm_set1_ps(point.u), at = _mm_loadu_ps(u);
+  const __m128 larger = _mm_mul_ps(_mm_set1_ps(kWarpDepthTolerance), _mm_max_ps(at, wanted));
+  const __m128 distance = _mm_andnot_ps(_mm_set1_ps(-0.0f), _mm_sub_ps(at, wanted));
+  const __m128i same = _mm_cmpeq_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(surface)),
+                                       _mm_set1_epi32(static_cast<int>(point.surface)));
+  return _mm_and_si128(same, _mm_castps_si128(_mm_cmple_ps(distance, larger)));
+}
+
+void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u, ptrdiff_t map_stride,
+                 const EdgePoint* points, size_t n, int16_t* patches) {
+  for (size_t i = 0; i < n; ++i) {
+    const EdgePoint& point = points[i];
+    const int16_t* samples = plane + point.plane_offset;
+    const uint32_t* surfaces = surface + point.map_offset;
+    const float* depths = u + point.map_offset;
+    const __m128i stand_in = _mm_set1_epi16(point.stand_in);
+    for (int k = 0; k < kWarpTaps; ++k) {
+      const __m128i mask = _mm_packs_epi32(shown(surfaces, depths, point), shown(surfaces + 4, depths + 4, point));
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(patches), _mm_blendv_epi8(stand_in, load(samples), mask));
+      samples += stride;
+      surfaces += map_stride;
+      depths += map_stride;
+      patches += kWarpTapStride;
+    }
+  }
+}
+
 }  // namespace
 
 void fill_warp_sse41(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.filter_points = filter_points;
+  table.cut_patches = cut_patches;
 }
 
 }  // namespace pac

@@ -74,6 +74,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
     PAC_KERNEL(warp, filter_points),
+    PAC_KERNEL(warp, cut_patches),
 };
 
 // The first instruction set, in ascending order, whose table holds the same function: its file exports it.
