@@ -99,6 +99,7 @@ Result<Accessor> get_accessor(const GltfFile& file, uint32_t number, const Limit
   PAC_TRY(accessor.type, get_component(file, accessor.json));
   accessor.normalized = accessor.json["normalized"].boolean(false);
   accessor.width = width_of(accessor.json["type"].text());
+  if (accessor.width == 0) return file.failure(Error::corrupt, accessor.json, "accessor has an unknown type");
   PAC_TRY(const uint64_t count, get_integer(file, accessor.json, "count", 0));
   // Before anything is allocated: no more elements than the bytes of the limit hold, and where there are bytes, no more
   // than those.

@@ -344,6 +344,7 @@ TEST_CASE("each wrong file gets its named error and a place in the file") {
   wrong("node has two parents", [](Parts& p) { p.nodes = "[{'children':[2]},{'children':[2]},{'mesh':0}]"; });
   wrong("names something that the file does not have", [](Parts& p) { p.nodes = "[{'mesh':1}]"; });
   wrong("unknown component type", [](Parts& p) { p.accessors.replace(p.accessors.find("5126"), 4, "5127"); });
+  wrong("accessor has an unknown type", [](Parts& p) { p.accessors.replace(p.accessors.find("VEC3"), 4, "VEC9"); });
   wrong("not a whole number of at least 0", [](Parts& p) { p.nodes = "[{'mesh':0.5}]"; });
   wrong("data URI is not base64", [](Parts& p) { p.buffers = "[{'byteLength':42,'uri':'data:;base64,!!'}]"; });
   wrong("buffer without a URI", [](Parts& p) { p.buffers = "[{'byteLength':42}]"; });
