@@ -2,6 +2,9 @@
 // iterative parser has no recursion that a file could deepen; this file's handler bounds what it may collect.
 #include "raster/load_gltf_json.h"
 
+#include <charconv>
+#include <cmath>
+#include <system_error>
 #include <utility>
 
 #if defined(PAC_HAVE_RAPIDJSON) && PAC_HAVE_RAPIDJSON
@@ -49,6 +52,13 @@ class ByteStream {
   size_t at_ = 0;
 };
 
+// Of a number outside double's range: whether it is too small, which its exponent says.
+bool is_tiny(const char* text, size_t length) {
+  for (size_t i = 0; i + 1 < length; ++i)
+    if ((text[i] == 'e' || text[i] == 'E') && text[i + 1] == '-') return true;
+  return false;
+}
+
 // Grows the tree as values come by; false stops the parser.
 class TreeBuilder {
  public:
@@ -56,12 +66,19 @@ class TreeBuilder {
 
   bool Null() { return add(JsonNode::Kind::null, 0); }
   bool Bool(bool value) { return add(JsonNode::Kind::boolean, value ? 1 : 0); }
-  bool Int(int value) { return add(JsonNode::Kind::number, value); }
-  bool Uint(unsigned value) { return add(JsonNode::Kind::number, value); }
-  bool Int64(int64_t value) { return add(JsonNode::Kind::number, static_cast<double>(value)); }
-  bool Uint64(uint64_t value) { return add(JsonNode::Kind::number, static_cast<double>(value)); }
-  bool Double(double value) { return add(JsonNode::Kind::number, value); }
-  bool RawNumber(const char*, rapidjson::SizeType, bool) { return false; }
+  // Of numbers that RapidJSON reads itself, which it is told not to.
+  bool Int(int) { return false; }
+  bool Uint(unsigned) { return false; }
+  bool Int64(int64_t) { return false; }
+  bool Uint64(uint64_t) { return false; }
+  bool Double(double) { return false; }
+  // JSON's numbers are among those that from_chars reads. Beyond double's range: infinity or 0, as rounding gives.
+  bool RawNumber(const char* text, rapidjson::SizeType length, bool) {
+    double value = 0;
+    const auto read = std::from_chars(text, text + length, value);
+    if (read.ec == std::errc::result_out_of_range) value = is_tiny(text, length) ? 0.0 : HUGE_VAL;
+    return add(JsonNode::Kind::number, value);
+  }
   bool String(const char* text, rapidjson::SizeType length, bool) {
     if (!add(JsonNode::Kind::string, 0)) return false;
     tree_.nodes.back().text = static_cast<uint32_t>(tree_.strings.size());
@@ -128,9 +145,9 @@ Result<JsonTree> parse_json(std::span<const uint8_t> text) {
   ByteStream stream(text.subspan(mark));
   TreeBuilder builder(stream);
   rapidjson::Reader reader;
-  // Full precision is correctly rounded and asks neither strtod nor the locale.
+  // Numbers come as text: RapidJSON 1.1's own reading of them shifts zero by the count of its leading zeros.
   constexpr unsigned kFlags =
-      rapidjson::kParseIterativeFlag | rapidjson::kParseFullPrecisionFlag | rapidjson::kParseValidateEncodingFlag;
+      rapidjson::kParseIterativeFlag | rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseValidateEncodingFlag;
   const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
   if (result.IsError()) {
     const uint64_t at = result.Offset() + mark;
