@@ -139,7 +139,9 @@ EncodeOptions options_for(Effort effort, Tune tune, double quality) {
   EncodeOptions options;
   options.quality = quality;
   options.tune = tune;
-  options.table_source = TableSource::tuned;
+  options.table_source = effort == Effort::fast     ? TableSource::tuned
+                         : effort == Effort::normal ? TableSource::fitted
+                                                    : TableSource::adapted;
   options.huffman = effort == Effort::fast ? Huffman::standard : Huffman::optimal;
   options.dead_zone = effort == Effort::fast ? 0.0 : 0.18;
   options.trellis = effort == Effort::best;

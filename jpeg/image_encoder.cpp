@@ -1,6 +1,7 @@
 #include "jpeg/image_encoder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -25,6 +26,19 @@ void smooth(uint32_t (&counts)[256]) {
   }
 }
 
+// Statistics of the trellis look at about so many blocks, those of DC alone at fewer.
+constexpr int64_t kSampledBlocks = 12288, kFewBlocks = 3072;
+
+bool is_sampled(int mcu_row, int period) {
+  return mcu_row % period == period / 2;
+}
+
+constexpr ChromaGain kNoGain = [] {
+  ChromaGain none{};
+  for (double& gain : none.gain) gain = 1.0;
+  return none;
+}();
+
 }  // namespace
 
 Result<void> check_options(const SourceImage& image, const EncodeOptions& options) {
@@ -46,6 +60,8 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
     if (n_blocks > kMaxBlocksInMcu) return bad("sampling factors make more than 10 blocks in an MCU");
   }
   if (options.metadata != nullptr) PAC_CHECK(check_metadata(*options.metadata));
+  if (options.seen.data != nullptr && (options.seen.width != image.width() || options.seen.height != image.height()))
+    return bad("the picture to be seen is not of the image's size");
   if (!options.tables) return {};
   for (const QuantTable* table : {&options.tables->luma, &options.tables->chroma})
     for (const uint16_t step : *table)
@@ -84,19 +100,64 @@ void ImageEncoder::for_each_band(Fn&& fn) {
 
 void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options, bool keep_coefficients) {
   options_ = options;
+  bias_ = 0;
   const Kernels* table = kernels_for(options.isa);
   kernels_ = table != nullptr ? table : &kernels();
-  const bool design = !options.tables && options.stream == nullptr && options.table_source == TableSource::adapted;
+  masking_ = is_tuned() ? options.tune : Tune::psnr;
   if (image.pulled != nullptr || image.pixels.data != nullptr) options_.threads = 1;
   const Frame frame = make_frame(image, options);
+  const Component &luma = frame.components[0], &chroma = frame.components[frame.n_components - 1];
+  chroma_gain_ = is_tuned() ? chroma_gain(options.tune, luma.h == 2 * chroma.h, luma.v == 2 * chroma.v) : kNoGain;
   split(frame);
-  for_each_band([&](Band& band) {
-    band.source.reset(image, frame, *kernels_, keep_coefficients || design || options.trellis, band.first_row,
-                      band.end_row);
-  });
-  if (!design) return;
-  designer_.reset();
-  for (Band& band : bands_) designer_.add_rows(band.source, band.first_row, band.end_row);
+  const bool is_fitted = is_tuned() && options.table_source == TableSource::fitted;
+  // Pulled rows come once.
+  const bool keep = keep_coefficients || is_adapted() || options.trellis || (is_fitted && image.pulled != nullptr);
+  for_each_band([&](Band& band) { band.source.reset(image, frame, *kernels_, keep, band.first_row, band.end_row); });
+  seen_visibility_.clear();
+  const bool is_full = luma.h == frame.h_max && luma.v == frame.v_max;
+  if (options.seen.data != nullptr && options.trellis && masking_ != Tune::psnr && is_full) measure_seen();
+  if (is_adapted() || is_fitted) design(!is_adapted());
+}
+
+// Of each luma block of the picture seen, in rows.
+void ImageEncoder::measure_seen() {
+  CoefficientSource seen;
+  const int n_rows = ceil_div(options_.seen.height, 8);
+  SourceImage image;
+  image.rgb = options_.seen;
+  seen.reset(image, make_frame(options_.seen.width, options_.seen.height, Subsampling::gray), *kernels_, false, 0,
+             n_rows);
+  for (int row = 0; row < n_rows; ++row) {
+    seen.load(row);
+    const size_t n = seen.n_blocks(0, row);
+    for (size_t i = 0; i < n; ++i) seen_visibility_.push_back(visibility(masking_, seen.row(0) + 64 * i));
+  }
+}
+
+// Of luma block i of a loaded MCU row.
+float ImageEncoder::visibility_of(const Band& band, int mcu_row, size_t i) const {
+  if (seen_visibility_.empty()) return visibility(masking_, band.source.row(0) + 64 * i);
+  const Component& luma = band.source.frame().components[0];
+  return seen_visibility_[static_cast<size_t>(mcu_row) * luma.v * static_cast<size_t>(luma.width_blocks) + i];
+}
+
+// Of all rows in order, whatever the bands.
+void ImageEncoder::design(bool dc_only) {
+  const int period = sample_period(dc_only ? kFewBlocks : kSampledBlocks);
+  designer_.reset(dc_only);
+  for (Band& band : bands_)
+    for (int row = band.first_row; row < band.end_row; ++row)
+      if (is_sampled(row, period)) designer_.add_row(band.source, row);
+  designer_.finish();
+}
+
+// Every how many MCU rows statistics look, so that they see about max_blocks.
+int ImageEncoder::sample_period(int64_t max_blocks) const {
+  const Frame& frame = bands_[0].source.frame();
+  int64_t n_blocks = 0;
+  for (int c = 0; c < frame.n_components; ++c)
+    n_blocks += int64_t{frame.components[c].width_blocks} * frame.components[c].height_blocks;
+  return static_cast<int>(std::min<int64_t>((n_blocks + max_blocks - 1) / max_blocks, frame.mcu_rows));
 }
 
 ScanTables ImageEncoder::known_tables() const {
@@ -109,21 +170,26 @@ QuantTables ImageEncoder::tables_at(double quality, bool scale_tables) const {
   switch (options_.table_source) {
     case TableSource::tuned:
       return tuned_tables(options_.tune, quality);
+    case TableSource::fitted:
+      return designer_.dc_at_quality(options_.tune, quality);
     case TableSource::adapted:
-      return designer_.at_quality(options_.tune, quality);
+      return designer_.at_quality(options_.tune, quality, chroma_gain_.gain);
     default:
       return annex_k_tables(quality);
   }
 }
 
-void ImageEncoder::set_up(const QuantTables& tables, double quality) {
-  const bool designed = !options_.tables && options_.table_source == TableSource::adapted;
-  const ReferenceSteps reference = designed ? tuned_reference(options_.tune, quality) : reference_of(tables);
-  quantizers_[0] = make_quantizer(tables.luma, options_.dead_zone);
-  quantizers_[1] = make_quantizer(tables.chroma, options_.dead_zone);
-  weights_[0] = trellis_weights(tables.luma, reference.luma);
-  weights_[1] = trellis_weights(tables.chroma, reference.chroma);
-  use_trellis_ = false;
+void ImageEncoder::set_tables(const QuantTables& tables, double dead_zone) {
+  quantizers_[0] = make_quantizer(tables.luma, dead_zone, kNoGain.gain);
+  quantizers_[1] = make_quantizer(tables.chroma, dead_zone, chroma_gain_.gain);
+  if (!options_.trellis) return;
+  const double full_rate = is_tuned() ? exchange_rates(options_.tune).trellis : ExchangeRates().trellis;
+  const double rate = full_rate * (1.0 - 0.9 * bias_);
+  weights_[0] = trellis_weights(tables.luma, reference_.luma, kNoGain.gain, rate);
+  weights_[1] = trellis_weights(tables.chroma, reference_.chroma, chroma_gain_.gain, rate);
+}
+
+void ImageEncoder::reserve_levels() {
   for (Band& band : bands_) {
     const Frame& frame = band.source.frame();
     for (int c = 0; c < frame.n_components; ++c) {
@@ -141,89 +207,137 @@ void ImageEncoder::quantize(Band& band, int mcu_row) {
     const size_t n = band.source.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
     for (size_t i = 0; i < n; ++i) {
       const int16_t* coefficients = band.source.row(c) + 64 * i;
-      trellis_quantize(coefficients, weights_[set], importance_of(c, coefficients), costs_[set],
-                       band.levels.zigzag[c].data() + 64 * i, band.levels.nonzero[c][i]);
+      const float importance = c == 0 ? visibility_of(band, mcu_row, i) / mean_visibility_ : 1.0f;
+      trellis_quantize(coefficients, weights_[set], importance, costs_[set], band.levels.zigzag[c].data() + 64 * i,
+                       band.levels.nonzero[c][i]);
     }
   }
 }
 
-void ImageEncoder::tokenize(Band& band) {
-  band.tokenizer.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
-  for (int row = band.first_row; row < band.end_row; ++row) {
-    quantize(band, row);
-    band.tokenizer.add_mcu_row(row, band.levels);
+void ImageEncoder::add_sums(Band& band, int mcu_row) const {
+  for (int c = 0; c < band.source.frame().n_components; ++c) {
+    const size_t n = band.source.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
+    for (size_t i = 0; i < n; ++i) {
+      const int16_t* levels = band.levels.zigzag[c].data() + 64 * i;
+      for (uint64_t rest = band.levels.nonzero[c][i]; rest != 0; rest &= rest - 1) {
+        const int k = std::countr_zero(rest), level = levels[k];
+        band.sums.products[set][k] += level * band.source.row(c)[64 * i + kNaturalFromZigzag[k]];
+        band.sums.squares[set][k] += level * level;
+      }
+    }
   }
 }
 
-Histogram ImageEncoder::histogram() {
-  for_each_band([&](Band& band) { tokenize(band); });
+// The sampled rows of a band.
+void ImageEncoder::tokenize(Band& band, int period) {
+  band.sums = {};
+  band.tokenizer.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
+  for (int row = band.first_row; row < band.end_row; ++row) {
+    if (!is_sampled(row, period)) continue;
+    quantize(band, row);
+    band.tokenizer.add_mcu_row(row, band.levels);
+    if (use_trellis_ && is_adapted()) add_sums(band, row);
+  }
+}
+
+Histogram ImageEncoder::histogram(int period) {
+  for_each_band([&](Band& band) { tokenize(band, period); });
   Histogram sum;
   for (const Band& band : bands_) band.tokenizer.add_histogram(sum);
   return sum;
 }
 
 // Errors hide in busy blocks of luma; squared error knows nothing of it.
-void ImageEncoder::measure_visibility() {
-  mean_visibility_ = 0;
-  const bool is_tuned = !options_.tables && options_.table_source != TableSource::annex_k;
-  if (!is_tuned || options_.tune == Tune::psnr) return;
+void ImageEncoder::measure_visibility(int period) {
   double sum = 0;
   size_t n_blocks = 0;
   for (Band& band : bands_) {
     for (int row = band.first_row; row < band.end_row; ++row) {
+      if (!is_sampled(row, period)) continue;
       band.source.load(row);
       const size_t n = band.source.n_blocks(0, row);
-      for (size_t i = 0; i < n; ++i) sum += visibility(band.source.row(0) + 64 * i);
+      for (size_t i = 0; i < n; ++i) sum += visibility_of(band, row, i);
       n_blocks += n;
     }
   }
-  mean_visibility_ = sum / static_cast<double>(n_blocks);
+  mean_visibility_ = static_cast<float>(sum / static_cast<double>(n_blocks));
 }
 
-double ImageEncoder::importance_of(int c, const int16_t* coefficients) const {
-  if (c > 0 || mean_visibility_ == 0) return 1.0;
-  const double ratio = visibility(coefficients) / mean_visibility_;
-  // More of it gains nothing in SSIMULACRA 2.1 and costs squared error.
-  return options_.tune == Tune::visual ? std::sqrt(ratio) : ratio;
-}
-
-// What symbols cost: the standard tables' lengths, or those of tables made for the plainly quantized image.
-void ImageEncoder::measure_costs() {
+// What symbols cost: the standard tables' lengths, or those of tables made for the sample as quantized so far.
+void ImageEncoder::measure_costs(int period) {
   ScanTables tables = known_tables();
-  if (options_.huffman == Huffman::optimal && options_.stream == nullptr) {
-    Histogram counts = histogram();
+  const bool is_optimal = options_.huffman == Huffman::optimal && options_.stream == nullptr;
+  Histogram counts;
+  if (is_optimal || use_trellis_) counts = histogram(period);
+  if (is_optimal) {
     smooth(counts.count[kAc0]);
     smooth(counts.count[kAc1]);
     tables = optimal_tables(counts);
   }
   costs_[0] = ac_costs(tables.spec[kAc0]);
   costs_[1] = ac_costs(tables.spec[kAc1]);
+}
+
+// The steps with the least squared error for the levels chosen: centroids, so to speak.
+void ImageEncoder::refine(QuantTables& tables) const {
+  for (size_t set = 0; set < 2; ++set) {
+    QuantTable& table = set == 0 ? tables.luma : tables.chroma;
+    const double* gain = set == 0 ? kNoGain.gain : chroma_gain_.gain;
+    for (size_t k = 0; k < 64; ++k) {
+      int64_t products = 0, squares = 0;
+      for (const Band& band : bands_) {
+        products += band.sums.products[set][k];
+        squares += band.sums.squares[set][k];
+      }
+      if (squares == 0) continue;
+      uint16_t& step = table[kNaturalFromZigzag[k]];
+      const double best = effective_gain(gain[kNaturalFromZigzag[k]], step) * static_cast<double>(products) /
+                          (kDctScale * static_cast<double>(squares));
+      step = static_cast<uint16_t>(std::clamp(static_cast<int>(std::floor(best + 0.5)), 1, 255));
+    }
+  }
+}
+
+// Rounding -> costs of symbols -> trellis -> their costs, and steps, anew. Further rounds gain less than 0.1 %.
+void ImageEncoder::optimize(QuantTables& tables, double quality) {
+  const int period = sample_period(kSampledBlocks);
+  reference_ = is_adapted() ? tuned_reference(options_.tune, quality) : reference_of(tables);
+  measure_visibility(period);
+  use_trellis_ = false;
+  set_tables(tables, dead_zone());
+  measure_costs(period);
   // From here on candidates start at the nearest level: the trellis itself decides what is worth less.
   use_trellis_ = true;
+  set_tables(tables, 0.0);
+  measure_costs(period);
+  if (!is_adapted()) return;
+  refine(tables);
+  set_tables(tables, 0.0);
 }
 
-void ImageEncoder::prepare(const QuantTables& tables, double quality) {
-  set_up(tables, quality);
-  if (!options_.trellis) return;
-  measure_visibility();
-  measure_costs();
-  quantizers_[0] = make_quantizer(tables.luma, 0.0);
-  quantizers_[1] = make_quantizer(tables.chroma, 0.0);
+void ImageEncoder::prepare(QuantTables& tables, double quality) {
+  reserve_levels();
+  use_trellis_ = false;
+  if (options_.trellis)
+    optimize(tables, quality);
+  else
+    set_tables(tables, dead_zone());
 }
 
-Histogram ImageEncoder::count_symbols(const QuantTables& tables, double quality) {
+Histogram ImageEncoder::count_symbols(QuantTables tables, double quality) {
   prepare(tables, quality);
-  return histogram();
+  return histogram(1);
 }
 
-void ImageEncoder::write_file(const QuantTables& tables, double quality, ByteSink& sink) {
+QuantTables ImageEncoder::write_file(QuantTables tables, double quality, ByteSink& sink) {
   prepare(tables, quality);
   // With known tables levels become bits at once; else all tokens wait for the tables made of them.
   const bool direct = options_.huffman == Huffman::standard || options_.stream != nullptr;
-  const ScanTables scan_tables = direct ? known_tables() : optimal_tables(histogram());
+  const ScanTables scan_tables = direct ? known_tables() : optimal_tables(histogram(1));
   write_headers(bands_[0].source.frame(), tables, scan_tables, options_, sink);
   write_entropy_coded(scan_tables, direct, sink);
   write_end_of_image(sink);
+  return tables;
 }
 
 void ImageEncoder::write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink) {

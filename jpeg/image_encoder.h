@@ -29,16 +29,26 @@ class ImageEncoder {
   QuantTables tables_at(double quality, bool scale_tables) const;
 
   // How often each symbol occurs with those tables.
-  Histogram count_symbols(const QuantTables& tables, double quality);
+  Histogram count_symbols(QuantTables tables, double quality);
 
-  // The whole file with those tables. `quality`: the one that made them, for what else depends on it.
-  void write_file(const QuantTables& tables, double quality, ByteSink& sink);
+  // Of the next files, 0..1: levels are rounded further down, and errors count less for the trellis. 0 at start().
+  void set_bias(double bias) { bias_ = bias; }
+
+  // The whole file with those tables. `quality`: the one that made them, for what else depends on it. Returns the
+  // tables in the file: where they are adapted, the trellis's choice of levels moves them a little.
+  QuantTables write_file(QuantTables tables, double quality, ByteSink& sink);
 
  private:
+  // For each set of tables and zigzag position: sums of level * coefficient and of squared levels.
+  struct LevelSums {
+    int64_t products[2][64] = {}, squares[2][64] = {};
+  };
+
   // MCU rows that are coded by one thread: all of them, or those between two restart markers.
   struct Band {
     int first_row = 0, end_row = 0;
     CoefficientSource source;
+    LevelSums sums;
     Levels levels;
     Tokenizer tokenizer;
     BlockWalker walker;
@@ -47,21 +57,36 @@ class ImageEncoder {
   };
 
   ScanTables known_tables() const;
-  void set_up(const QuantTables& tables, double quality);
+  bool is_tuned() const {
+    return !options_.tables && options_.stream == nullptr && options_.table_source != TableSource::annex_k;
+  }
+  bool is_adapted() const { return is_tuned() && options_.table_source == TableSource::adapted; }
+  double dead_zone() const { return options_.dead_zone + bias_ * (kMaxDeadZone - options_.dead_zone); }
+  void measure_seen();
+  float visibility_of(const Band& band, int mcu_row, size_t i) const;
+  void design(bool dc_only);
+  void set_tables(const QuantTables& tables, double dead_zone);
+  void reserve_levels();
   void split(const Frame& frame);
   template <class Fn>
   void for_each_band(Fn&& fn);
+  int sample_period(int64_t max_blocks) const;
   void quantize(Band& band, int mcu_row);
-  void tokenize(Band& band);
-  Histogram histogram();
+  void add_sums(Band& band, int mcu_row) const;
+  void tokenize(Band& band, int period);
+  Histogram histogram(int period);
   void write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink);
   void write_band(Band& band, const ScanTables& tables, bool direct, ByteSink& sink);
-  void prepare(const QuantTables& tables, double quality);
-  void measure_costs();
-  void measure_visibility();
-  double importance_of(int c, const int16_t* coefficients) const;
+  void prepare(QuantTables& tables, double quality);
+  void optimize(QuantTables& tables, double quality);
+  void measure_costs(int period);
+  void measure_visibility(int period);
+  void refine(QuantTables& tables) const;
+
+  static constexpr double kMaxDeadZone = 0.49;
 
   EncodeOptions options_;
+  double bias_ = 0;
   const Kernels* kernels_ = nullptr;
   std::vector<Band> bands_;  // at least one
   std::optional<ThreadPool> pool_;
@@ -69,8 +94,12 @@ class ImageEncoder {
   BlockQuantizer quantizers_[2];
   TrellisWeights weights_[2];
   AcCosts costs_[2];
-  double mean_visibility_ = 0;  // of the luma blocks; 0: all blocks count the same
-  bool use_trellis_ = false;    // costs_ are known
+  ReferenceSteps reference_;            // of the trellis
+  ChromaGain chroma_gain_;              // 1 where tables are not tuned
+  Tune masking_ = Tune::psnr;           // options_.tune where tables are tuned
+  std::vector<float> seen_visibility_;  // empty: a block's own
+  float mean_visibility_ = 1;           // of the luma blocks
+  bool use_trellis_ = false;            // costs_ are known
 };
 
 }  // namespace pac::jpeg

@@ -36,8 +36,8 @@ struct QuantTables {
 QuantTables annex_k_tables(double quality);
 
 // Tables of a tuning at a quality in (0, 100] on the IJG scale. At quality 50:
-//   psnr    nearly flat, 28 to 34, chroma 0.6 times luma: least squared error of RGB for the bytes
-//   ssim    the same luma, chroma twice that: structure of luma
+//   psnr    nearly flat, 28 to 34, chroma 15 rising to 43 as 4:2:0 decoders blur it: least squared error of RGB
+//   ssim    flat 28, chroma 73 to 115: structure of luma
 //   visual  18 to 80, rising with frequency, chroma alike: what SSIMULACRA 2.1 sees
 QuantTables tuned_tables(Tune tune, double quality);
 
@@ -61,6 +61,7 @@ class StreamTables;  // jpeg/abbreviated.h
 enum class TableSource : uint8_t {
   annex_k,  // annex_k_tables(quality)
   tuned,    // tuned_tables(tune, quality)
+  fitted,   // the same but for the DC steps, which are chosen for this image's flat areas from a sample of its rows
   adapted,  // adapted_tables(image, ..., tune, quality): rate-distortion optimal for this image; a pass more
 };
 
@@ -77,7 +78,10 @@ struct EncodeOptions {
   bool trellis = false;           // rate-distortion choice of AC levels (then dead_zone only serves the first estimate)
   int threads = 1;                // 0 = all processors, at most 1024. Work is shared only where restart markers stand
                                   // between rows of MCUs (see row_restart_interval); results never depend on it
-  Isa isa = best_isa();           // results never depend on it
+  // For a difference image, whose errors will be seen in the composite: the picture that shall be seen, H. For ssim and
+  // visual with the trellis, errors then hide where H is busy, not where the difference is. Same size, or empty.
+  ConstRgbView seen{};
+  Isa isa = best_isa();                  // results never depend on it
   const Metadata* metadata = nullptr;    // written behind the JFIF segment, whose density it tells
   const StreamTables* stream = nullptr;  // tables that the decoder has already: `tables`, `table_source` and `huffman`
                                          // do not count, the file holds none [T.81 B.4]
@@ -87,8 +91,8 @@ struct EncodeOptions {
 int row_restart_interval(int width, Subsampling subsampling);
 int row_restart_interval(int width, const SamplingFactors& sampling);
 
-// Presets, all with tuned_tables(tune): fast = standard Huffman tables, no dead zone; normal = optimal Huffman tables
-// and dead zone 0.18; best = normal with the trellis, which for ssim and visual lets errors hide in busy blocks.
+// Presets. fast: tuned tables, standard Huffman tables, no dead zone. normal: fitted tables, optimal Huffman tables,
+// dead zone 0.18. best: adapted tables and the trellis, which for ssim and visual lets errors hide in busy blocks.
 EncodeOptions options_for(Effort effort, Tune tune, double quality);
 
 // A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).
@@ -124,20 +128,23 @@ class Encoder {
 // Tables with the least rate for their distortion, chosen step by step from the histograms of the image's DCT
 // coefficients (RD-OPT: Ratnakar and Livny, DCC 1995): minimal D + lambda R, R the entropy of the levels at each
 // frequency, D the squared error, weighted by the steps of `tune`. lambda follows from `quality`
-// so that the bytes come near those of tuned_tables(tune, quality). Errors: as encode.
+// so that the bytes come near those of tuned_tables(tune, quality). encode() with the trellis then moves each step to
+// the one that fits the levels chosen best. Errors: as encode.
 Result<QuantTables> adapted_tables(ConstRgbView image, Subsampling subsampling, Tune tune, double quality);
 
 // The largest quality whose file, headers and all, has at most target_bytes.
 struct SizedFile {
   std::vector<uint8_t> bytes;
-  double quality = 0;  // real-valued
-  QuantTables tables;
+  double quality = 0;                 // real-valued
+  QuantTables tables;                 // in the file
+  bool is_between_qualities = false;  // finer than encode() at `quality`
 };
 // Searches real-valued quality in hundredths (quarters with adapted tables); options.quality is ignored. Where
 // options.tables are given they count as the tables of quality 50 and are scaled as annex_k_tables scales. Size is
 // *not* assumed to fall with quality: after bisection, all further table sets whose size comes within 1/32 above the
-// target, and 24 beyond the last one that fits, are tried, and the largest quality that fits wins. Errors: as encode;
-// out_of_space (even the lowest quality is longer; byte_offset holds its size).
+// target, and 24 beyond the last one that fits, are tried, and the largest quality that fits wins. Where it leaves more
+// than a hundredth of the target, single steps of the next tables and a bias of levels towards 0 fill the rest. Errors:
+// as encode; out_of_space (even the lowest quality is longer; byte_offset holds its size).
 Result<SizedFile> encode_to_size(ConstRgbView image, const EncodeOptions& options, uint64_t target_bytes);
 
 // ---- Decoding -----------------------------------------------------------------------------------------------------

@@ -18,9 +18,9 @@ namespace pac::jpeg {
 Result<std::vector<uint8_t>> encode_pixels(ConstPixelView image, const EncodeOptions& options = {});
 
 // Pulls rows from `source` as they are needed. With standard Huffman tables (or options.stream) and neither trellis nor
-// adapted tables, working memory is a few rows of MCUs whatever the height; optimal Huffman tables keep 4 bytes for
-// each coefficient that is not zero, the others all coefficients. One thread. Errors: as encode; bad_argument where the
-// source has no row to give.
+// fitted or adapted tables, working memory is a few rows of MCUs whatever the height; optimal Huffman tables keep 4
+// bytes for each coefficient that is not zero, the others all coefficients. One thread. Errors: as encode; bad_argument
+// where the source has no row to give.
 Result<std::vector<uint8_t>> encode_rows(int width, int height, PixelFormat format, const RowSource& source,
                                          const EncodeOptions& options = {});
 

@@ -16,15 +16,16 @@ void set_divisor(uint32_t divisor, uint16_t& reciprocal, uint16_t& scale) {
     s -= 1;
   }
   reciprocal = static_cast<uint16_t>(m);
-  scale = static_cast<uint16_t>(uint32_t{1} << (16 - s));  // s >= 1 here because divisors are multiples of 8
+  scale = static_cast<uint16_t>(uint32_t{1} << (16 - s));  // s >= 1 here because divisors are at least 8
 }
 
 }  // namespace
 
-BlockQuantizer make_quantizer(const QuantTable& steps, double dead_zone) {
+BlockQuantizer make_quantizer(const QuantTable& steps, double dead_zone, const double (&gain)[64]) {
   BlockQuantizer quantizer;
   for (size_t i = 0; i < 64; ++i) {
-    const uint32_t divisor = uint32_t{kDctScale} * steps[i];
+    const auto divisor =
+        static_cast<uint32_t>(kDctScale * steps[i] / effective_gain(gain[i], steps[i]) + 0.5);  // at least 8
     set_divisor(divisor, quantizer.reciprocal[i], quantizer.scale[i]);
     quantizer.bias[i] = static_cast<uint16_t>(i == 0 ? divisor / 2.0 : divisor * (0.5 - dead_zone));
   }

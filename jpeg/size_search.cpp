@@ -1,6 +1,8 @@
-// The largest real-valued quality whose file fits.
+// The largest real-valued quality whose file fits, and what lies between it and the next.
+#include <algorithm>
 #include <vector>
 
+#include "base/kernels/block_kernels.h"
 #include "jpeg/image_encoder.h"
 #include "jpeg/jpeg.h"
 
@@ -9,6 +11,31 @@ namespace {
 
 bool equal(const QuantTables& a, const QuantTables& b) {
   return a.luma == b.luma && a.chroma == b.chroma;
+}
+
+// The finest 0 <= n < end that fits by bisection, where 0 does and `end` does not.
+template <class Fits>
+int bisect(int end, Fits&& fits) {
+  int low = 0, high = end;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (fits(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+// The first n_finer of the 128 steps from `finer`, the others from `coarser`: lowest frequencies first, luma before
+// chroma.
+QuantTables mixed(const QuantTables& coarser, const QuantTables& finer, int n_finer) {
+  QuantTables tables = coarser;
+  for (int i = 0; i < n_finer; ++i) {
+    const size_t natural = kNaturalFromZigzag[i / 2];
+    if (i % 2 == 0)
+      tables.luma[natural] = finer.luma[natural];
+    else
+      tables.chroma[natural] = finer.chroma[natural];
+  }
+  return tables;
 }
 
 class SizeSearch {
@@ -26,28 +53,86 @@ class SizeSearch {
   // The largest quality found to fit, or 0.
   int largest_fitting() {
     if (size_at(1) > target_) return 0;
-    int low = 1, high = 100 * units_per_quality_ + 1;  // low fits
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      (size_at(middle) <= target_ ? low : high) = middle;
-    }
+    const int low = 1 + bisect(100 * units_per_quality_, [&](int n) { return size_at(1 + n) <= target_; });
     return scan_upwards(low);
   }
 
+  // Writes the file of `units`, which fits. Where it leaves more than a hundredth of the target: steps of the next
+  // finer tables one after the other, lowest frequencies first, as long as they fit; then sets that do not fit, with
+  // levels biased towards 0 as far as they must.
+  void write(int units, SizedFile& file) {
+    file.quality = quality_of(units);
+    Fill best{tables_at(units), file.quality, 0, size_at(units)};
+    const int next = best.size < enough() ? next_larger(units) : 0;
+    if (next > 0) {
+      const QuantTables coarser = best.tables, finer = tables_at(next);
+      const auto fits = [&](int n) { return consider(mixed(coarser, finer, n), quality_of(next), 0, best); };
+      // With none of the finer steps a quality may still differ by what else depends on it.
+      const int n_fitting = fits(0) ? bisect(kSteps + 1, fits) : -1;
+      for (int n = n_fitting + 1; n <= std::min(n_fitting + kTooFine, kSteps) && best.size < enough(); ++n)
+        bias(mixed(coarser, finer, n), quality_of(next), best);
+    }
+    file.is_between_qualities = best.quality != file.quality || !equal(best.tables, tables_at(units));
+    ByteSink sink(file.bytes);
+    encoder_.set_bias(best.bias);
+    file.tables = encoder_.write_file(best.tables, best.quality, sink);
+    encoder_.set_bias(0);
+  }
+
  private:
+  static constexpr int kSteps = 128, kTooFine = 8, kBiases = 256, kNearBiases = 16;
+
+  // What fills the target best so far.
+  struct Fill {
+    QuantTables tables;
+    double quality, bias;
+    uint64_t size;
+  };
+
   struct Tried {
     int units;
     QuantTables tables;
     uint64_t size;
   };
 
+  uint64_t size(const QuantTables& tables, double quality, double bias) {
+    ByteSink counter;
+    encoder_.set_bias(bias);
+    encoder_.write_file(tables, quality, counter);
+    encoder_.set_bias(0);
+    return counter.size();
+  }
+
   uint64_t size_of(int units, const QuantTables& tables) {
     for (const Tried& tried : tried_)
       if (tried.units == units || (tables_decide_ && equal(tried.tables, tables))) return tried.size;
-    ByteSink counter;
-    encoder_.write_file(tables, quality_of(units), counter);
-    tried_.push_back({units, tables, counter.size()});
-    return counter.size();
+    const uint64_t bytes = size(tables, quality_of(units), 0);
+    tried_.push_back({units, tables, bytes});
+    return bytes;
+  }
+
+  uint64_t enough() const { return target_ - target_ / 100; }
+
+  // Whether it fits; it becomes `best` if it also fills more.
+  bool consider(const QuantTables& tables, double quality, double bias, Fill& best) {
+    const uint64_t bytes = size(tables, quality, bias);
+    if (bytes <= target_ && bytes > best.size) best = {tables, quality, bias, bytes};
+    return bytes <= target_;
+  }
+
+  // The least bias with which these tables fit, and its neighbors: sizes are not monotonic here either.
+  void bias(const QuantTables& tables, double quality, Fill& best) {
+    const auto fits = [&](int n) { return consider(tables, quality, 1.0 - static_cast<double>(n) / kBiases, best); };
+    if (!fits(0)) return;
+    const int least = bisect(kBiases, fits);
+    for (int n = least + 2; n <= std::min(least + kNearBiases, kBiases) && best.size < enough(); ++n) fits(n);
+  }
+
+  // The next quality of other bytes, 0 if there is none.
+  int next_larger(int units) {
+    for (int next = units + 1; next <= 100 * units_per_quality_; ++next)
+      if (size_at(next) > target_) return next;
+    return 0;
   }
 
   // Finer steps now and then give a shorter file: goes on while sizes are near the target, and over 24 table sets.
@@ -92,10 +177,7 @@ Result<SizedFile> encode_to_size(ConstRgbView image, const EncodeOptions& option
   if (units == 0)
     return Failure{Error::out_of_space, search.size_at(1), "even the lowest quality is longer than the target"};
   SizedFile file;
-  file.quality = search.quality_of(units);
-  file.tables = search.tables_at(units);
-  ByteSink sink(file.bytes);
-  encoder.write_file(file.tables, file.quality, sink);
+  search.write(units, file);
   return file;
 }
 

@@ -6,37 +6,75 @@
 
 #include "jpeg/coefficients.h"
 #include "jpeg/jpeg.h"
+#include "jpeg/tables.h"
 
 namespace pac::jpeg {
 
-// Histograms of the DCT coefficients of an image, for each frequency, of luma and of both chroma components together.
-class TableDesigner {
+// Steps of DC, from the values that it takes and the differences that are coded. Flat areas share one value, and a step
+// that meets it takes the error of all of them away.
+class DcDesigner {
  public:
-  static constexpr int kKinds = 7;  // of blocks, by activity
-
-  // Forgets the last image.
   void reset();
-  // Adds MCU rows; bands of an image in order.
-  void add_rows(CoefficientSource& source, int first_row, int end_row);
-  // For each frequency the step with the least bits + kBitsPerSquaredStep * sum((error / reference)^2), the reference
-  // being tuned_reference(tune, quality) and the bits the entropy of the levels at that frequency.
-  QuantTables at_quality(Tune tune, double quality) const;
+  void add(const int16_t* coefficients, size_t n_blocks, int& dc);
+  void finish();
+  // The step with the least bits + bits_per_squared_step * sum((error / reference)^2).
+  uint16_t best_step(double reference, double bits_per_squared_step) const;
 
  private:
-  // Magnitudes in units of half a coefficient: fine enough for step 1.
-  static constexpr int kBins = 2 * 1024 + 64;
-  struct Histograms {
-    std::vector<uint32_t> counts[kKinds];  // [64 natural][kBins]
-    int n_bins[kKinds][64] = {};           // beyond: zeros
-    uint64_t n_blocks = 0;
-    void reset();
+  // Values and magnitudes of differences in units of an eighth of a sample, which is one unit of the DCT.
+  static constexpr int kRange = 1040;
+  struct Occurrence {
+    int magnitude;
+    uint32_t count;
   };
-  void add(const int16_t* coefficients, size_t n_blocks, int& dc, Histograms& to) const;
-  double cost(const Histograms& of, size_t natural, int step, double reference) const;
-  uint16_t best_step(const Histograms& of, size_t natural, double reference) const;
+  double cost(int step, double weight) const;
 
-  Histograms luma_, chroma_;
-  int dc_[3] = {0, 0, 0};  // of the block before
+  std::vector<uint32_t> value_counts_, difference_counts_;
+  std::vector<Occurrence> values_, differences_;
+};
+
+// Histograms of the AC coefficients of an image, for each frequency and each of some kinds of blocks.
+class AcDesigner {
+ public:
+  void reset();
+  void add(const int16_t* coefficients, size_t n_blocks);
+  void finish();
+  // The step of frequency `natural` (1..63) with the least bits + bits_per_squared_step * sum((error / reference)^2),
+  // the bits being the entropy of its levels. Coefficients count multiplied by `gain`.
+  uint16_t best_step(size_t natural, double reference, double gain, double bits_per_squared_step) const;
+
+ private:
+  static constexpr int kKinds = 7;    // of blocks, by activity
+  static constexpr int kBins = 1024;  // magnitudes in units of half a coefficient; larger ones count as the largest
+  // Of all coefficients below a bin: how many there are, their magnitudes' sum and squares' sum.
+  struct Below {
+    double count, sum, squares;
+  };
+  double cost(size_t natural, int step, double reference, double gain, double bits_per_squared_step) const;
+
+  std::vector<uint16_t> counts_;  // [kKinds][64 natural][kBins]
+  uint16_t n_bins_[kKinds][64] = {};
+  std::vector<Below> below_;
+  uint32_t first_below_[kKinds][64] = {};
+};
+
+class TableDesigner {
+ public:
+  // Forgets the last image. dc_only: dc_at_quality() will be asked for, not at_quality().
+  void reset(bool dc_only);
+  // MCU rows of an image in order, all of them or a sample.
+  void add_row(CoefficientSource& source, int mcu_row);
+  void finish();
+  // All steps chosen for the reference tuned_reference(tune, quality).
+  QuantTables at_quality(Tune tune, double quality, const double (&chroma_gain)[64]) const;
+  // tuned_tables(tune, quality) but for DC.
+  QuantTables dc_at_quality(Tune tune, double quality) const;
+
+ private:
+  bool dc_only_ = false, has_chroma_ = false;
+  DcDesigner dc_[2];  // of luma, of both chroma components together
+  AcDesigner ac_[2];
+  int last_dc_[3] = {0, 0, 0};
 };
 
 }  // namespace pac::jpeg

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/exact_math.h"
 #include "jpeg/jpeg.h"
 
 namespace pac::jpeg {
@@ -59,19 +60,36 @@ constexpr double kVisualLuma[15] = {18.0, 30.4, 36.9, 42.3, 46.9, 51.1, 55.0, 58
                                     62.1, 65.4, 68.6, 71.6, 74.5, 77.4, 80.1};
 constexpr double kVisualChroma[15] = {21.2, 31.0, 36.1, 40.3, 44.0, 47.3, 50.4, 53.2,
                                       56.0, 58.6, 61.0, 63.4, 65.7, 67.9, 70.1};
-constexpr double kSsimChroma[15] = {56.0, 60.6, 63.7, 66.4, 68.9, 71.2, 73.4, 75.4,
-                                    77.5, 79.4, 81.3, 83.2, 85.0, 86.7, 88.5};
+constexpr double kSsimChroma[15] = {72.8,  78.8,  82.8,  86.3,  89.6,  92.6,  95.4, 98.0,
+                                    100.8, 103.2, 105.7, 108.2, 110.5, 112.7, 115.1};
 
+// The energy that (1 3 3 1)/4 interpolation along one axis leaves of frequency u, which doubles flat samples' energy.
+double interpolated_energy(int u) {
+  return (10.0 + 6.0 * exact_cos(kPi * u / 8)) / 16;
+}
+
+// psnr: an error of a chroma sample spreads over four pixels, which alone would make its step half of luma's; less so
+// at high frequencies, where the interpolation takes errors down as well. The exponent of that is less than theory's
+// 0.5: most chroma errors are zeroed coefficients.
 ReferenceSteps tuned_base(Tune tune) {
-  constexpr double kFlatLuma = 28.0, kSlope = 0.2, kPsnrChroma = 0.6;
+  constexpr double kFlatLuma = 28.0, kPsnrSlope = 0.2, kPsnrChroma = 0.55 * kFlatLuma, kPsnrExponent = -0.4;
   ReferenceSteps base;
   for (int i = 0; i < 64; ++i) {
-    const int frequency = i % 8 + i / 8;
-    const double sloped = kFlatLuma * (1.0 + kSlope * frequency / 14.0);
-    base.luma[i] = tune == Tune::visual ? kVisualLuma[frequency] : sloped;
-    base.chroma[i] = tune == Tune::visual ? kVisualChroma[frequency]
-                     : tune == Tune::ssim ? kSsimChroma[frequency]
-                                          : kPsnrChroma * sloped;
+    const int u = i % 8, v = i / 8, frequency = u + v;
+    switch (tune) {
+      case Tune::psnr:
+        base.luma[i] = kFlatLuma * (1.0 + kPsnrSlope * frequency / 14.0);
+        base.chroma[i] = kPsnrChroma * exact_pow(interpolated_energy(u) * interpolated_energy(v), kPsnrExponent);
+        break;
+      case Tune::ssim:
+        base.luma[i] = kFlatLuma;
+        base.chroma[i] = kSsimChroma[frequency];
+        break;
+      case Tune::visual:
+        base.luma[i] = kVisualLuma[frequency];
+        base.chroma[i] = kVisualChroma[frequency];
+        break;
+    }
   }
   return base;
 }
@@ -140,6 +158,27 @@ ReferenceSteps tuned_reference(Tune tune, double quality) {
     reference.chroma[i] = std::fmax(reference.chroma[i] * factor, 0.5);
   }
   return reference;
+}
+
+ExchangeRates exchange_rates(Tune tune) {
+  switch (tune) {
+    case Tune::ssim:
+      return {8.0, 14.0};
+    case Tune::visual:
+      return {10.0, 12.0};
+    default:
+      return {};
+  }
+}
+
+ChromaGain chroma_gain(Tune tune, bool is_halved_across, bool is_halved_down) {
+  const double a = tune == Tune::psnr ? 0.15 : 0.0;
+  const double across = is_halved_across ? a : 0.0, down = is_halved_down ? a : 0.0;
+  ChromaGain chroma;
+  for (int i = 0; i < 64; ++i)
+    chroma.gain[i] = (1.0 + 2.0 * across * (1.0 - exact_cos(kPi * (i % 8) / 8))) *
+                     (1.0 + 2.0 * down * (1.0 - exact_cos(kPi * (i / 8) / 8)));
+  return chroma;
 }
 
 QuantTables halved(const QuantTables& tables) {

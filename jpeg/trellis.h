@@ -4,34 +4,38 @@
 #include <cstdint>
 
 #include "jpeg/huffman.h"
-#include "jpeg/jpeg.h"
+#include "jpeg/tables.h"
 
 namespace pac::jpeg {
 
-// Code lengths of the AC symbols RRRRSSSS; kNoCode for symbols without a code.
+// Bits of a level after a run of zeros, both codes and extra bits: [size of the level][run 0..62], ZRLs included.
 struct AcCosts {
-  static constexpr int kNoCode = 40;
-  uint8_t bits[256];
+  float bits[16][64];
+  float least[16];  // of any run
+  float end_of_block;
 };
+// Symbols without a code cost 40 bits.
 AcCosts ac_costs(const HuffmanSpec& spec);
 
 // What an error costs, in zigzag order.
 struct TrellisWeights {
-  double divisor[64];  // 8 * step
-  double weight[64];   // bits for each squared unit of coefficient error
+  float divisor[64];  // of coefficients, which are scaled by 8: 8 * step / gain
+  float weight[64];   // bits for each squared unit of coefficient error
 };
-// J = bits + 8 * sum((error / reference)^2), error in units of the DCT. See tables.h for the references and for the 8.
-TrellisWeights trellis_weights(const QuantTable& steps, const double (&reference)[64]);
+// J = bits + bits_per_squared_step * sum((error / reference)^2), error in units of the DCT.
+TrellisWeights trellis_weights(const QuantTable& steps, const double (&reference)[64], const double (&gain)[64],
+                               double bits_per_squared_step);
 
-// Chooses among, for each coefficient that rounds to a level other than 0, that level, the next smaller one and 0, the
-// choice with the least J over all runs and ends of block (dynamic programming over the last level that is not 0).
-// levels, nonzero: rounded to nearest at entry (zigzag order), replaced. coefficients: natural order, scaled by 8. DC
-// stays. importance: what the block's errors count, 1 = as `weights` say.
-void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, double importance,
+// Chooses, for each coefficient that rounds to a level other than 0, among that level, 0, and the next smaller level if
+// it has fewer bits, the choice with the least J over all runs and ends of block. levels, nonzero: rounded to nearest
+// at entry (zigzag order), replaced. coefficients: natural order, scaled by 8. DC stays. importance: what the block's
+// errors count, 1 = as `weights` say.
+void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights, float importance,
                       const AcCosts& costs, int16_t* levels, uint64_t& nonzero);
 
-// How much a block's errors show beside others' [masking]: 1 / sqrt(variance of its samples + 100). SSIM divides errors
-// by the variance; by its root, measured, fewest bytes give that SSIM, because other blocks' bits become too dear else.
-double visibility(const int16_t* coefficients);
+// How much a block's errors show beside others' [masking]. SSIM divides squared errors by the variance of the samples;
+// ssim: (variance + 100)^-0.75, visual: its third root, found best on training pictures because other blocks' bits
+// become too dear beyond; psnr: 1.
+float visibility(Tune tune, const int16_t* coefficients);
 
 }  // namespace pac::jpeg

@@ -137,18 +137,40 @@ TEST_CASE("halved tables halve every step, never below 1") {
   }
 }
 
+// Luma's, and chroma's where nothing is subsampled.
+jpeg::ChromaGain no_gain() {
+  return jpeg::chroma_gain(jpeg::Tune::psnr, false, false);
+}
+
 TEST_CASE("multiplying by reciprocals divides exactly, for every step and every magnitude") {
   const auto high = [](uint32_t a, uint32_t b) { return a * b >> 16; };
   for (int step = 1; step <= 255; ++step) {
     jpeg::QuantTable steps;
     steps.fill(static_cast<uint16_t>(step));
-    const BlockQuantizer quantizer = jpeg::make_quantizer(steps, 0.0);
+    const BlockQuantizer quantizer = jpeg::make_quantizer(steps, 0.0, no_gain().gain);
     const auto divisor = static_cast<uint32_t>(8 * step);
     REQUIRE(quantizer.bias[0] == divisor / 2);
     uint32_t mistakes = 0;
     for (uint32_t n = 0; n < 32768; ++n)
       mistakes += high(high(n, quantizer.reciprocal[5]), quantizer.scale[5]) != n / divisor ? 1 : 0;
     REQUIRE(mistakes == 0);
+  }
+}
+
+TEST_CASE("a gain makes the divisor smaller, never below that of step 1") {
+  const jpeg::ChromaGain chroma = jpeg::chroma_gain(jpeg::Tune::psnr, true, true);
+  CHECK(chroma.gain[0] == 1.0);
+  CHECK(chroma.gain[63] > 2.0);
+  jpeg::QuantTable steps;
+  for (const int step : {1, 2, 40}) {
+    steps.fill(static_cast<uint16_t>(step));
+    const BlockQuantizer quantizer = jpeg::make_quantizer(steps, 0.0, chroma.gain);
+    int16_t coefficients[64] = {}, levels[64];
+    uint64_t nonzero;
+    coefficients[63] = 2000;
+    kernels().block.quantize(coefficients, quantizer, 1, levels, &nonzero);
+    const double gain = chroma.gain[63] < step ? chroma.gain[63] : step;
+    CHECK(std::abs(levels[63] - gain * 250.0 / step) < 1.0);
   }
 }
 
@@ -161,7 +183,7 @@ TEST_CASE("the dead zone moves the rounding point of AC and leaves DC alone") {
   coefficients[1] = 8 * 15 + 4;     // 1.55 steps: level 2 without, 1 with a dead zone of 0.1
   coefficients[8] = -(8 * 16) - 4;  // -1.65 steps: level -2 in both
   const auto quantize = [&](double dead_zone) {
-    kernels().block.quantize(coefficients, jpeg::make_quantizer(steps, dead_zone), 1, levels, &nonzero);
+    kernels().block.quantize(coefficients, jpeg::make_quantizer(steps, dead_zone, no_gain().gain), 1, levels, &nonzero);
   };
   quantize(0.0);
   CHECK((levels[0] == 3 && levels[1] == 2 && levels[2] == -2 && nonzero == 7));

@@ -117,7 +117,7 @@ void report(const std::string& picture, const std::string& setting, const Curve&
 // The peer's files beside the picture, by setting.
 std::map<std::string, Curve> peer_curves(const std::string& path, const RgbImage& image) {
   std::map<std::string, Curve> curves;
-  for (const char* setting : {"moz-default", "moz-flat"}) {
+  for (const char* setting : {"moz-default", "moz-flat", "moz-flat-all", "moz-ms-ssim", "moz-psnr-hvs"}) {
     for (const int quality : kQualities) {
       const auto file =
           read_file(path.substr(0, path.rfind('.')) + "." + setting + "." + std::to_string(quality) + ".jpg");

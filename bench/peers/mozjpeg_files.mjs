@@ -1,6 +1,11 @@
-// Files of mozjpeg for jpeg_bytes: NAME.moz-default.QUALITY.jpg and NAME.moz-flat.QUALITY.jpg beside each NAME.ppm.
+// Files of mozjpeg for jpeg_bytes: NAME.SETTING.QUALITY.jpg beside each NAME.ppm.
 //   npm install @jsquash/jpeg && node mozjpeg_files.mjs NAME.ppm ...      (from the folder that has node_modules)
-// Baseline, 4:2:0, trellis on, as its defaults are; moz-flat: its table 1, which -tune-psnr and -tune-ssim use.
+// Baseline, 4:2:0, trellis on. Of what the package exposes (not the lambdas that -tune-psnr and -tune-ssim also set):
+//   moz-default   its default table (3)
+//   moz-flat      table 1, flat, which -tune-psnr and -tune-ssim use
+//   moz-flat-all  the same with every option of the trellis: more loops and passes, tables and zero blocks optimized
+//   moz-ms-ssim   table 2, tuned for MS-SSIM
+//   moz-psnr-hvs  table 4, tuned for PSNR-HVS-M
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
@@ -30,11 +35,12 @@ function readPpm(path) {
 
 for (const path of process.argv.slice(2)) {
   const image = readPpm(path);
-  for (const [name, quant_table] of [['moz-default', 3], ['moz-flat', 1]]) {
+  for (const [name, quant_table, all] of [['moz-default', 3, false], ['moz-flat', 1, false], ['moz-flat-all', 1, true],
+                                          ['moz-ms-ssim', 2, false], ['moz-psnr-hvs', 4, false]]) {
     for (const quality of [15, 30, 45, 60, 75, 84, 90]) {
       const file = await encode(image, {
         quality, quant_table, baseline: true, progressive: false, arithmetic: false, optimize_coding: true, smoothing: 0,
-        color_space: 3, trellis_multipass: false, trellis_opt_zero: false, trellis_opt_table: false, trellis_loops: 1,
+        color_space: 3, trellis_multipass: all, trellis_opt_zero: all, trellis_opt_table: all, trellis_loops: all ? 4 : 1,
         auto_subsample: false, chroma_subsample: 2, separate_chroma_quality: false, chroma_quality: quality,
       });
       fs.writeFileSync(path.replace(/\.ppm$/, `.${name}.${quality}.jpg`), Buffer.from(file));

@@ -41,7 +41,7 @@ void declare(Options& options, Request& request) {
                        "what the tables are made for (visual)");
   options.choice<Effort>("--effort", request.effort,
                          {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
-                         "fast: standard Huffman; default: optimal Huffman, dead zone; best: also the trellis");
+                         "fast: standard Huffman; default: optimal Huffman, dead zone; best: tables for the picture, trellis");
   options.choice<Huffman>("--huffman", request.huffman,
                           {{"standard", Huffman::standard}, {"optimal", Huffman::optimal}},
                           "Annex K.3's tables, or made for the picture; overrides --effort");
