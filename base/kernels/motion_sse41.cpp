@@ -13,13 +13,10 @@ namespace {
 
 #include "base/kernels/motion_simd.inc"
 
-// The scalar file's constants: round(c * 2^13).
-constexpr int k0_541 = 4433, k0_765 = 6270, k1_847 = 15137, k1_175 = 9633, k1_961 = 16069, k0_390 = 3196;
-constexpr int k0_298 = 2446, k2_053 = 16819, k3_072 = 25172, k1_501 = 12299, k0_899 = 7373, k2_562 = 20995;
-
 // One row a vector.
+using Lanes = __m128i;
 struct Block {
-  __m128i v[8];
+  Lanes v[8];
 };
 
 PAC_INLINE Block transpose(const Block& b) {
@@ -36,25 +33,14 @@ PAC_INLINE Block transpose(const Block& b) {
            _mm_unpacklo_epi64(c3, c7), _mm_unpackhi_epi64(c3, c7)}};
 }
 
-// Sums and differences of rows at a distance of 1, 2, 4: the Hadamard transform down the columns.
-PAC_INLINE void hadamard(Block& b) {
-  for (int half = 1; half < 8; half *= 2)
-    for (int i = 0; i < 8; ++i) {
-      if ((i & half) != 0) continue;
-      const __m128i sum = _mm_add_epi16(b.v[i], b.v[i + half]);
-      b.v[i + half] = _mm_sub_epi16(b.v[i], b.v[i + half]);
-      b.v[i] = sum;
-    }
-}
-
 // 32-bit values in two vectors.
 struct Wide {
   __m128i low, high;
 };
-Wide operator+(const Wide& a, const Wide& b) {
+PAC_INLINE Wide operator+(const Wide& a, const Wide& b) {
   return {_mm_add_epi32(a.low, b.low), _mm_add_epi32(a.high, b.high)};
 }
-Wide operator-(const Wide& a, const Wide& b) {
+PAC_INLINE Wide operator-(const Wide& a, const Wide& b) {
   return {_mm_sub_epi32(a.low, b.low), _mm_sub_epi32(a.high, b.high)};
 }
 
@@ -80,99 +66,38 @@ PAC_INLINE __m128i round_shift(const Wide& x) {
                          _mm_srai_epi32(_mm_add_epi32(x.high, half), kShift));
 }
 
-// One dimension, forward. First pass: one bit of fraction stays; second: it goes.
-template <bool kIsFirst>
-PAC_INLINE void fdct_1d(Block& x) {
-  constexpr int kShift = kIsFirst ? 12 : 14;
-  const __m128i sum07 = _mm_add_epi16(x.v[0], x.v[7]), difference07 = _mm_sub_epi16(x.v[0], x.v[7]);
-  const __m128i sum16 = _mm_add_epi16(x.v[1], x.v[6]), difference16 = _mm_sub_epi16(x.v[1], x.v[6]);
-  const __m128i sum25 = _mm_add_epi16(x.v[2], x.v[5]), difference25 = _mm_sub_epi16(x.v[2], x.v[5]);
-  const __m128i sum34 = _mm_add_epi16(x.v[3], x.v[4]), difference34 = _mm_sub_epi16(x.v[3], x.v[4]);
-
-  const __m128i even0 = _mm_add_epi16(sum07, sum34), even3 = _mm_sub_epi16(sum07, sum34);
-  const __m128i even1 = _mm_add_epi16(sum16, sum25), even2 = _mm_sub_epi16(sum16, sum25);
-  const auto scale = [](__m128i v) {
-    // The second pass's sums stay within +-32640: adding 1 cannot overflow.
-    return kIsFirst ? _mm_slli_epi16(v, 1) : _mm_srai_epi16(_mm_add_epi16(v, _mm_set1_epi16(1)), 1);
-  };
-  x.v[0] = scale(_mm_add_epi16(even0, even1));
-  x.v[4] = scale(_mm_sub_epi16(even0, even1));
-  const Pairs even23 = interleave(even2, even3);
-  x.v[2] = round_shift<kShift>(multiply(even23, k0_541, k0_541 + k0_765));
-  x.v[6] = round_shift<kShift>(multiply(even23, k0_541 - k1_847, k0_541));
-
-  const Pairs z = interleave(_mm_add_epi16(difference34, difference16), _mm_add_epi16(difference25, difference07));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
-  const Pairs outer = interleave(difference34, difference07), inner = interleave(difference25, difference16);
-  x.v[7] = round_shift<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
-  x.v[1] = round_shift<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
-  x.v[5] = round_shift<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
-  x.v[3] = round_shift<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
+PAC_INLINE Lanes add(Lanes a, Lanes b) {
+  return _mm_add_epi16(a, b);
+}
+PAC_INLINE Lanes subtract(Lanes a, Lanes b) {
+  return _mm_sub_epi16(a, b);
+}
+PAC_INLINE Lanes add_saturated(Lanes a, Lanes b) {
+  return _mm_adds_epi16(a, b);
+}
+PAC_INLINE Lanes subtract_saturated(Lanes a, Lanes b) {
+  return _mm_subs_epi16(a, b);
+}
+PAC_INLINE Lanes twice(Lanes v) {
+  return _mm_slli_epi16(v, 1);
+}
+PAC_INLINE Lanes half(Lanes v) {
+  return _mm_srai_epi16(_mm_add_epi16(v, _mm_set1_epi16(1)), 1);
+}
+PAC_INLINE Lanes zeros() {
+  return _mm_setzero_si128();
+}
+PAC_INLINE Lanes either(Lanes a, Lanes b) {
+  return _mm_or_si128(a, b);
+}
+PAC_INLINE bool is_zero(Lanes v) {
+  return _mm_testz_si128(v, v) != 0;
+}
+PAC_INLINE Wide widen_by_13(Lanes v) {
+  return {_mm_srai_epi32(_mm_unpacklo_epi16(zeros(), v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zeros(), v), 3)};
 }
 
-// One dimension, inverse: columns round away 10 bits, rows 19. The 16-bit additions saturate, as the contract says.
-template <int kShift>
-PAC_INLINE void idct_1d(Block& x) {
-  const Pairs even26 = interleave(x.v[2], x.v[6]);
-  const Wide even2 = multiply(even26, k0_541 + k0_765, k0_541), even3 = multiply(even26, k0_541, k0_541 - k1_847);
-  const auto shift_left_13 = [](__m128i v) {
-    const __m128i zero = _mm_setzero_si128();
-    return Wide{_mm_srai_epi32(_mm_unpacklo_epi16(zero, v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zero, v), 3)};
-  };
-  const Wide even0 = shift_left_13(_mm_adds_epi16(x.v[0], x.v[4]));
-  const Wide even1 = shift_left_13(_mm_subs_epi16(x.v[0], x.v[4]));
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
-
-  const Pairs z = interleave(_mm_adds_epi16(x.v[7], x.v[3]), _mm_adds_epi16(x.v[5], x.v[1]));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
-  const Pairs odd71 = interleave(x.v[7], x.v[1]), odd53 = interleave(x.v[5], x.v[3]);
-  const Wide b0 = multiply(odd71, k0_298 - k0_899, -k0_899) + odd3;
-  const Wide b1 = multiply(odd53, k2_053 - k2_562, -k2_562) + odd4;
-  const Wide b2 = multiply(odd53, -k2_562, k3_072 - k2_562) + odd3;
-  const Wide b3 = multiply(odd71, -k0_899, k1_501 - k0_899) + odd4;
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
-}
-// The same where rows 4 to 7 of the input are zero: sums with them vanish, so that their products do.
-template <int kShift>
-PAC_INLINE void idct_1d_half(Block& x) {
-  const __m128i zero = _mm_setzero_si128();
-  const Pairs two = interleave(x.v[2], zero);
-  const Wide even2 = multiply(two, k0_541 + k0_765, 0), even3 = multiply(two, k0_541, 0);
-  const Wide even0{_mm_srai_epi32(_mm_unpacklo_epi16(zero, x.v[0]), 3),
-                   _mm_srai_epi32(_mm_unpackhi_epi16(zero, x.v[0]), 3)};
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even0 + even3, a2 = even0 - even3;
-  const Pairs odd = interleave(x.v[1], x.v[3]);
-  const Wide b0 = multiply(odd, k1_175 - k0_899, k1_175 - k1_961);
-  const Wide b1 = multiply(odd, k1_175 - k0_390, k1_175 - k2_562);
-  const Wide b2 = multiply(odd, k1_175, k3_072 - k2_562 + k1_175 - k1_961);
-  const Wide b3 = multiply(odd, k1_501 - k0_899 + k1_175 - k0_390, k1_175);
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
-}
-
-bool lower_half_is_zero(const Block& b) {
-  const __m128i rows = _mm_or_si128(_mm_or_si128(b.v[4], b.v[5]), _mm_or_si128(b.v[6], b.v[7]));
-  return _mm_testz_si128(rows, rows) != 0;
-}
-
-// Columns, then rows.
-PAC_INLINE void idct_2d(Block& b) {
-  if (lower_half_is_zero(b))
-    idct_1d_half<10>(b);
-  else
-    idct_1d<10>(b);
-  b = transpose(b);
-  if (lower_half_is_zero(b))
-    idct_1d_half<19>(b);
-  else
-    idct_1d<19>(b);
-  b = transpose(b);
-}
+#include "base/kernels/motion_transforms.inc"
 
 __m128i difference_row(const uint8_t* source, const uint8_t* prediction) {
   return _mm_sub_epi16(widen(load_8(source)), widen(load_8(prediction)));
@@ -202,10 +127,7 @@ void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t
     Block block;
     for (int y = 0; y < 8; ++y)
       block.v[y] = difference_row(source + y * source_stride + 8 * i, prediction + y * prediction_stride + 8 * i);
-    block = transpose(block);
-    fdct_1d<true>(block);
-    block = transpose(block);
-    fdct_1d<false>(block);
+    fdct_2d(block);
     for (int y = 0; y < 8; ++y) store(coefficients + 64 * i + 8 * static_cast<size_t>(y), block.v[y]);
   }
 }
