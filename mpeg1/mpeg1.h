@@ -79,7 +79,7 @@ struct SequenceOptions {
   int pel_aspect_ratio_code = 1;  // 1..14 [2.4.3.2]; 1 = square
   int gop_length = 15;            // an I picture every so many pictures, 1..132; display order is coding order
   // 1..31 where bit_rate_bps is 0: of P pictures; between integers, macroblocks of both kinds. I pictures are quantized
-  // finer, by up to half where the group before stood still: their quality is what the others inherit.
+  // finer, down to 0.6 of it where the group before stood still: their quality is what the others inherit.
   double quantizer_scale = 4;
   int64_t bit_rate_bps = 0;  // 400..104857200 (multiple of 400 after rounding up): constant bit rate with VBV
   int vbv_buffer_size = 0;   // 1..1023 units of 16384 bits; 0: chosen
