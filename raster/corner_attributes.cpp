@@ -44,6 +44,31 @@ void set_uv(const Surface& surface, const Vertex* const vertices[3], CornerAttri
   }
 }
 
+// Directions in which u grows and v falls, the same for the whole triangle: positions are affine in u and v, so with
+// e_i = p_i - p_0 and likewise du_i, dv_i, dp/du = (e_1 dv_2 - e_2 dv_1) / (du_1 dv_2 - du_2 dv_1). Zero where the
+// texture coordinates span no area.
+void set_tangents(const Surface& surface, const Vertex* const vertices[3], CornerAttributes& out) {
+  double e[2][3], du[2], dv[2];
+  for (int k = 0; k < 2; ++k) {
+    const Vertex &from = *vertices[0], &to = *vertices[k + 1];
+    for (int c = 0; c < 3; ++c)
+      e[k][c] = double{sanitized(to.position[c], 0x1p60f)} - double{sanitized(from.position[c], 0x1p60f)};
+    du[k] = double{sanitized(to.texcoord[0], 0x1p24f)} - double{sanitized(from.texcoord[0], 0x1p24f)};
+    dv[k] = double{sanitized(to.texcoord[1], 0x1p24f)} - double{sanitized(from.texcoord[1], 0x1p24f)};
+  }
+  const double area = du[0] * dv[1] - du[1] * dv[0];
+  const double sign = area > 0 ? 1.0 : area < 0 ? -1.0 : 0.0;
+  float along_u[3], against_v[3];
+  for (int c = 0; c < 3; ++c) {
+    along_u[c] = static_cast<float>(sign * (e[0][c] * dv[1] - e[1][c] * dv[0]));
+    against_v[c] = static_cast<float>(sign * (e[0][c] * du[1] - e[1][c] * du[0]));
+  }
+  const FaceNormal right = unit_normal({along_u[0], along_u[1], along_u[2]});
+  const FaceNormal up = unit_normal({against_v[0], against_v[1], against_v[2]});
+  const float both[6] = {right.x, right.y, right.z, up.x, up.y, up.z};
+  for (int i = 0; i < 3; ++i) std::copy_n(both, 6, out.value[i] + surface.layout.tangents);
+}
+
 void set_lit_colors(const Surface& surface, int corner, const float* lit, CornerAttributes& out) {
   float* value = out.value[corner];
   for (int c = 0; c < 3; ++c) {
@@ -111,41 +136,47 @@ void light_points(const Surface& surface, const TileKernels& kernels, int n, con
 void corner_attributes(const Surface& surface, const TileKernels& kernels, const FaceNormal& face,
                        const Vertex* const vertices[3], const float* const cached[3], const Vertex& first, bool front,
                        CornerAttributes& out) {
-  if (surface.layout.uv >= 0) set_uv(surface, vertices, out);
+  const AttributeLayout& layout = surface.layout;
+  if (layout.uv >= 0) set_uv(surface, vertices, out);
+  for (int i = 0; i < 3 && layout.alpha >= 0; ++i)
+    out.value[i][layout.alpha] = static_cast<float>(vertices[i]->color[3]);
+  for (int i = 0; i < 3 && layout.position >= 0; ++i)
+    for (int c = 0; c < 3; ++c) out.value[i][layout.position + c] = sanitized(vertices[i]->position[c], 0x1p60f);
+  if (layout.tangents >= 0) set_tangents(surface, vertices, out);
   if (surface.lit == Surface::Lit::no) {
     set_vertex_colors(surface, vertices, out);
     return;
   }
+  const float side = front ? 1.0f : -1.0f;
+  const CornerNormal flat{face.x * side, face.y * side, face.z * side};
+  CornerNormal normals[3] = {flat, flat, flat};
   float lit[3][6];
   if (surface.lit == Surface::Lit::per_face) {
-    const float side = front ? 1.0f : -1.0f;
-    const LitPoint flat{{face.x * side, face.y * side, face.z * side}, &first};
-    light_points(surface, kernels, 1, &flat, lit);
+    const LitPoint point{flat, &first};
+    light_points(surface, kernels, 1, &point, lit);
     for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, lit[0], out);
-    return;
-  }
-  CornerNormal normals[3];
-  bool all_cached = true;
-  for (int i = 0; i < 3; ++i) {
-    bool own;
-    normals[i] = seen_normal(*vertices[i], face, front, own);
-    all_cached = all_cached && own && cached[i] != nullptr;
-  }
-  if (surface.lit == Surface::Lit::per_corner) {
-    if (!all_cached) {
-      const LitPoint points[3] = {{normals[0], vertices[0]}, {normals[1], vertices[1]}, {normals[2], vertices[2]}};
-      light_points(surface, kernels, 3, points, lit);
+  } else {
+    bool all_cached = true;
+    for (int i = 0; i < 3; ++i) {
+      bool own;
+      normals[i] = seen_normal(*vertices[i], face, front, own);
+      all_cached = all_cached && own && cached[i] != nullptr;
     }
-    for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, all_cached ? cached[i] : lit[i], out);
-    return;
+    if (surface.lit == Surface::Lit::per_sample) {
+      set_vertex_colors(surface, vertices, out);
+    } else {
+      if (!all_cached) {
+        const LitPoint points[3] = {{normals[0], vertices[0]}, {normals[1], vertices[1]}, {normals[2], vertices[2]}};
+        light_points(surface, kernels, 3, points, lit);
+      }
+      for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, all_cached ? cached[i] : lit[i], out);
+    }
   }
-  set_vertex_colors(surface, vertices, out);
-  for (int i = 0; i < 3; ++i) {
-    float* value = out.value[i];
-    value[surface.layout.normal] = normals[i].x;
-    value[surface.layout.normal + 1] = normals[i].y;
-    value[surface.layout.normal + 2] = normals[i].z;
-    for (int c = 0; c < 3; ++c) value[surface.layout.position + c] = sanitized(vertices[i]->position[c], 0x1p60f);
+  for (int i = 0; i < 3 && layout.normal >= 0; ++i) {
+    float* value = out.value[i] + layout.normal;
+    value[0] = normals[i].x;
+    value[1] = normals[i].y;
+    value[2] = normals[i].z;
   }
 }
 

@@ -1,7 +1,6 @@
 #include "raster/renderer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "raster/occluder_tree.h"
 #include "raster/pose.h"
 #include "raster/sample_pattern.h"
+#include "raster/shadow_maps.h"
 #include "raster/surface.h"
 #include "raster/tile_painter.h"
 
@@ -25,13 +25,14 @@ struct Renderer::State {
   std::vector<Surface> surfaces[2];
   OccluderTree occluders;
   ShadowScene shadows[2];
+  ShadowMaps shadow_maps[2];
   Mesh posed;                                          // of scenes with objects
   std::vector<float> previous_clip;                    // of the vertices
   std::vector<std::unique_ptr<TilePainter>> painters;  // one a thread
 
   Result<const Mesh*> pose(const Scene& scene);
-  const ShadowScene* prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
-                                     ShadowScene& out);
+  Result<const ShadowScene*> prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
+                                             int rendering);
   Result<RenderStats> draw(const Scene& scene, const Camera& camera, const RenderQuality* const qualities[2],
                            const Camera* previous_camera, PaintInput& input);
 };
@@ -86,7 +87,7 @@ Result<Renderer> Renderer::create(int width, int height, const RendererOptions& 
   const Kernels* kernels = kernels_for(options.isa);
   if (kernels == nullptr) return Failure{Error::bad_argument, 0, "instruction set not available"};
   std::unique_ptr<State> state(
-      new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}, {}, {}});
+      new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}, {}, {}, {}});
   for (int i = 0; i < state->pool.thread_count(); ++i) state->painters.push_back(std::make_unique<TilePainter>());
   return Renderer(std::move(state));
 }
@@ -99,9 +100,16 @@ Result<const Mesh*> Renderer::State::pose(const Scene& scene) {
 }
 
 // Null where the quality casts no shadows.
-const ShadowScene* Renderer::State::prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
-                                                    ShadowScene& out) {
-  if (quality.lighting != Lighting::full) return nullptr;
+Result<const ShadowScene*> Renderer::State::prepare_shadows(const Scene& scene, const Mesh& mesh,
+                                                            const RenderQuality& quality, int rendering) {
+  if (quality.lighting == Lighting::local) return nullptr;
+  ShadowScene& out = shadows[rendering];
+  if (quality.lighting == Lighting::shadow_maps) {
+    out.samples.count = 1;
+    PAC_CHECK(shadow_maps[rendering].draw(scene, mesh, quality.shadow_map_side, *kernels, pool, painters, out));
+    return &out;
+  }
+  out.by_maps = false;
   occluders.update(mesh);
   out.tree = occluders.view();
   out.offset = 2e-4f * occluders.diagonal();
@@ -121,11 +129,14 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
     return Failure{Error::bad_argument, 0, "previous camera is missing, singular or not finite"};
   input.pattern = sample_pattern(qualities[0]->samples);
   if (input.pattern.empty()) return Failure{Error::bad_argument, 0, "samples must be 1, 4, 16 or 64"};
+  input.has_transparent = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                      [](const Material& material) { return material.alpha != AlphaMode::opaque; });
   for (int r = 0; r < 2; ++r) {
     if (qualities[r] == nullptr) continue;
     const int n = input.shading_samples[r] = qualities[r]->shading_samples;
     if (n != 0 && ((n != 1 && n != 4) || n >= qualities[r]->samples))
       return Failure{Error::bad_argument, 0, "shading_samples must be 0, or 1 or 4 and fewer than samples"};
+    if (input.has_transparent) input.shading_samples[r] = 0;
   }
   if (width == 0 || height == 0) return RenderStats{};
   PAC_TRY(const Mesh* const mesh, pose(scene));
@@ -139,8 +150,10 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
   for (int r = 0; r < 2; ++r) {
     input.surfaces[r] = nullptr;
     if (qualities[r] == nullptr) continue;
-    const ShadowScene* cast = prepare_shadows(scene, *mesh, *qualities[r], shadows[r]);
-    PAC_CHECK(prepare_surfaces(scene, camera, *qualities[r], cast, surfaces[r]));
+    RenderQuality quality = *qualities[r];
+    quality.shading_samples = input.shading_samples[r];
+    PAC_TRY(const ShadowScene* const cast, prepare_shadows(scene, *mesh, quality, r));
+    PAC_CHECK(prepare_surfaces(scene, camera, quality, cast, surfaces[r]));
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
   }
   auto stats = draw_list.build(frame, pool);
@@ -151,12 +164,7 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
   input.width = width;
   input.height = height;
   for (int c = 0; c < 3; ++c) input.background[c] = to_byte(scene.background[c]);
-  const int n_tiles = draw_list.tiles_x() * draw_list.tiles_y();
-  std::atomic<int> next{0};
-  pool.for_each(static_cast<int64_t>(painters.size()), [&](int64_t thread) {
-    TilePainter& painter = *painters[static_cast<size_t>(thread)];
-    for (int tile = next.fetch_add(1); tile < n_tiles; tile = next.fetch_add(1)) painter.paint(input, tile);
-  });
+  paint_tiles(input, painters, pool);
   return stats;
 }
 

@@ -21,6 +21,9 @@ enum class Shading : uint8_t {
 enum class Lighting : uint8_t {
   local,  // every light reaches every point that faces it, ambient light reaches all
   full,   // shadows of all lights, soft ones where the light has a size, and occlusion of the ambient light: by rays
+  // Shadows of directional and spot lights by depth maps seen from them, edges softened over three texels; lights have
+  // no size, point lights and ambient light no shadows. Cheaper than rays.
+  shadow_maps,
 };
 
 // What one rendering does. The two renderings of a split differ only in this and, for tessellation, in the Scene.
@@ -30,11 +33,13 @@ struct RenderQuality {
   int samples = 1;               // 1, 4, 16 or 64 a pixel, box-filtered
   bool cull_back_faces = false;  // true: materials that are not two_sided lose their back faces
   Lighting lighting = Lighting::local;
-  // Where colors are computed: 0 = at every sample (supersampling, the reference); else once for each triangle that a
+  // Where colors are computed: 0 = at every sample (supersampling, the reference; scenes with materials whose alpha is
+  // not opaque always are); else once for each triangle that a
   // pixel shows, at the pixel's center (1; samples 4, 16 or 64) or at the centers of its quarters (4; samples 16 or
   // 64), and weighted by the samples that show it. Coverage and depth are the samples' own either way.
   int shading_samples = 0;
-  int light_samples = 16;  // full lighting: rays a pixel to each light with a size, and of ambient occlusion: 1..64
+  int light_samples = 16;      // full lighting: rays a pixel to each light with a size, and of ambient occlusion: 1..64
+  int shadow_map_side = 1024;  // shadow maps: texels, 32..8192 (clamped, rounded down to a multiple of 32)
 
   bool operator==(const RenderQuality&) const = default;
 };

@@ -16,7 +16,14 @@ namespace pac::raster {
 enum class Wrap : uint8_t { repeat, clamp };
 enum class Filter : uint8_t { nearest, bilinear, trilinear };
 
-// A texture image (RGBA, sRGB-encoded; alpha is carried but not used) with its mip chain: level 0 as loaded, each next
+// How opaque a surface is: texel's alpha * vertex's alpha * Material::opacity, where the material asks.
+enum class AlphaMode : uint8_t {
+  opaque,  // alpha is ignored
+  mask,    // a sample is covered where alpha is at least the cutoff, by the texture even where texturing is off
+  blend,   // drawn over the opaque picture in the order of the scene's faces, hidden by what is nearer, hiding nothing
+};
+
+// A texture image (RGBA, sRGB-encoded; alpha as Material::alpha says) with its mip chain: level 0 as loaded, each next
 // one half as large (rounded down, at least 1), box-filtered, down to 1x1. The 1x1 level is the texture's mean color:
 // it replaces the texture where texturing is off. Made by make_texture().
 struct Texture {
@@ -57,6 +64,19 @@ struct Material {
   Filter filter = Filter::trilinear;
   bool lit = true;        // false: vertex colors are final (radiosity, dicing) and `lights` are ignored
   bool two_sided = true;  // false: back faces are not drawn where RenderQuality::cull_back_faces
+  // Trilinear filter only: the most probes along the longer side of a pixel's footprint, 1..8 (clamped). 1: isotropic.
+  int anisotropy = 1;
+  AlphaMode alpha = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  float opacity = 1;
+  // Indices into Scene::textures, -1 = none, with the material's wrap, filter and anisotropy. An empty texture counts
+  // as none. Lit materials only; where texturing is off, the mean of each (a flat normal map).
+  int32_t normal_texture = -1;  // (channel - 128) / 127: right, up and out of the texture; Phong shading only
+  float normal_scale = 1;       // of right and up
+  int32_t specular_texture = -1;
+  int32_t emission_texture = -1;  // scales `emission`, which the base texture then leaves alone
+  glm::vec3 reflection{0.0f};     // scales Scene::environment, seen in the surface
+  float reflection_blur = 0;      // 0: as sharp as the environment, 1: its mean color
 };
 
 struct Light {
@@ -81,6 +101,19 @@ struct Object {
   glm::mat4 previous_world_from_object{1.0f};
 };
 
+// What the air adds: distances from the eye in units of the world. The background is not fogged.
+struct Fog {
+  enum class Kind : uint8_t {
+    none,
+    linear,               // nothing up to `start`, only fog from `end` on
+    exponential,          // the share exp(-density * distance) of the surface's color arrives
+    exponential_squared,  // exp(-(density * distance)^2)
+  } kind = Kind::none;
+  glm::vec3 color{0.5f};
+  float start = 0, end = 1;
+  float density = 0;
+};
+
 struct Scene {
   std::string name;
   Mesh mesh;
@@ -93,6 +126,10 @@ struct Scene {
   // Negative: a fifth of the diagonal of the mesh's bounding box.
   float ambient_reach = -1;
   glm::vec3 background{0.0f};
+  Fog fog;
+  // Index into `textures` of what reflecting materials show, -1 = nothing: longitude from left to right with -z in the
+  // middle, latitude from +y at the top to -y.
+  int32_t environment = -1;
 };
 
 // Where from and how the scene is seen. Travels between machines as the raw bits of these floats, never as angles.

@@ -90,6 +90,18 @@ void count_lanes(uint32_t lanes, int seen[kLanes]) {
   for (; lanes != 0; lanes &= lanes - 1) ++seen[std::countr_zero(lanes)];
 }
 
+void look_up_maps(const ShadowScene& scene, const TileKernels& kernels, const LightingParameters& lighting, int n,
+                  const float* normal, const float* position, float* visibility) {
+  std::fill_n(visibility, kLanes * n, 1.0f);
+  for (int l = 0; l < lighting.light_count; ++l) {
+    float* row = visibility + (l + 1) * kBatchLanes;
+    if (scene.maps[l].depths != nullptr)
+      kernels.shadow_map(scene.maps[l], kLanes * n, normal, position, row);
+    else
+      std::fill_n(row, kLanes * n, 1.0f);
+  }
+}
+
 }  // namespace
 
 LightSamples make_light_samples(int count) {
@@ -130,6 +142,7 @@ LightSamples make_light_samples(int count) {
 void cast_shadows(const ShadowScene& scene, const TileKernels& kernels, const LightingParameters& lighting, int n,
                   const uint8_t* masks, SampleRange range, const float* normal, const float* position,
                   float* visibility) {
+  if (scene.by_maps) return look_up_maps(scene, kernels, lighting, n, normal, position, visibility);
   Rays rays{};
   const auto sample_number = [&](int i) { return (range.first + i) % scene.samples.count; };
   for (int group = 0; group < n; ++group) {

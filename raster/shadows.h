@@ -26,6 +26,9 @@ struct ShadowScene {
   float offset;         // of a ray's start from its surface
   float ambient_reach;  // 0: no ambient occlusion
   LightSamples samples;
+  // Instead of rays: the map of each light, `depths` null where it casts no shadows.
+  bool by_maps = false;
+  ShadowMap maps[kMaxKernelLights];
 };
 
 // Which of the samples one call uses: `count` from `first` on, in a circle.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/kernels/tile_kernels.h"
@@ -12,17 +13,29 @@
 
 namespace pac::raster {
 
-// The attributes that a triangle's record holds, in this order: color (3), texture coordinates (2, if textured), then
-// specular color (3, where corners are lit and a texture must not touch it) or normal and position (6, if lit at
-// samples). -1 = absent.
+// The attributes that a triangle's record holds, in this order, each where something reads it: color (3, always),
+// texture coordinates (2), vertex alpha (1, in 0..255), specular color (3, where corners are lit and a texture must not
+// touch it), normal (3), position (3), tangent and bitangent (6: right and up in the texture). -1 = absent.
 struct AttributeLayout {
   int count = 3;
   int uv = -1;
+  int alpha = -1;
   int specular = -1;
   int normal = -1;
   int position = -1;
+  int tangents = -1;
 
   bool operator==(const AttributeLayout&) const = default;
+};
+
+// What only some materials have.
+struct SurfaceMaps {
+  bool has_normal = false, has_specular = false, has_emission = false, has_environment = false;
+  TextureSampler normal, specular, emission, environment;
+  float normal_scale = 1;
+  float emission_color[3] = {0, 0, 0};  // of texel 1 = 1/255
+  float reflection[3] = {0, 0, 0};      // likewise
+  float environment_lod = 0;
 };
 
 struct Surface {
@@ -32,8 +45,17 @@ struct Surface {
   float mean[3] = {1, 1, 1};  // the mean texel / 255 where a texture is switched off
   LightingParameters lighting;
   const ShadowScene* shadows = nullptr;  // full lighting
-  TextureSampler sampler;
-  float lod_bias = 0;
+  bool textured = false;                 // colors are multiplied by texels
+  bool alpha_textured = false;           // alpha is multiplied by texels
+  TextureSampler sampler;                // where either is
+  float lod_bias = 0, lod_scale = 1;     // log2 and the distance of samples in pixels
+  int max_probes = 1;                    // anisotropic filter
+  std::unique_ptr<SurfaceMaps> maps;
+  AlphaMode alpha = AlphaMode::opaque;
+  float alpha_cutoff = 0;
+  float opacity = 1;  // where alpha is not textured, with the mean texel's
+  bool fogged = false;
+  FogParameters fog;
   uint32_t batch = 0;  // surfaces of equal `batch` may be shaded together: the number of the first of them
 };
 
@@ -42,5 +64,8 @@ struct Surface {
 // must outlive the surfaces.
 Result<void> prepare_surfaces(const Scene& scene, const Camera& camera, const RenderQuality& quality,
                               const ShadowScene* shadows, std::vector<Surface>& surfaces);
+
+// The same for depth alone: nothing but masks is shaded.
+Result<void> prepare_depth_surfaces(const Scene& scene, std::vector<Surface>& surfaces);
 
 }  // namespace pac::raster

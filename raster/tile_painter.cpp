@@ -11,12 +11,17 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   const Area area{tile_x * kTileSize, tile_y * kTileSize, std::min(kTileSize, input.width - tile_x * kTileSize),
                   std::min(kTileSize, input.height - tile_y * kTileSize)};
   input.draw_list->triangles_of(tile, triangles_);
+  find_transparent(input);
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
   const size_t n_samples = input.pattern.size();
   for (int r = 0; r < n_renderings; ++r)
     for (int c = 0; c < 3; ++c)
       std::fill_n(sums_[r] + c * kTilePixels, kTilePixels,
                   static_cast<uint16_t>(n_samples * input.background[c] + n_samples / 2));
+  if (has_masked_ || has_blended_) {
+    paint_samples(input, area);
+    return write_color(input, area);
+  }
   write_first_sample(input, area);
   if (!wants_color(input, 0) && !wants_color(input, 1)) return;
   if (n_samples == 1) {
@@ -54,7 +59,7 @@ void TilePainter::shade_first_sample(const PaintInput& input, const Area& area) 
     if (!wants_color(input, r)) continue;
     if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
     n_packs_ = n_packs;
-    shade(input, {r, 0, 1, position(area, input.pattern[0]), false});
+    shade(input, {r, 0, 1, position(area, input.pattern[0]), false}, sums_[r]);
   }
 }
 
@@ -109,71 +114,138 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rend
       if (groups[i].samples == 0) continue;
       n_packs_ = input.kernels->tile.collect_grid(grid_, groups[i].samples, row, std::min(row + kGridRows, area.height),
                                                   area.width, triangles_.data(), packs_);
-      shade(input, {rendering, groups[i].number, count, position(area, groups[i].place), shading_samples != 0});
+      shade(input, {rendering, groups[i].number, count, position(area, groups[i].place), shading_samples != 0},
+            sums_[rendering]);
     }
 }
 
+// Each sample a rasterization of its own: tiles with masked or transparent triangles.
+void TilePainter::paint_samples(const PaintInput& input, const Area& area) {
+  const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
+  const auto n_samples = static_cast<int>(input.pattern.size());
+  for (int s = 0; s < n_samples; ++s) {
+    const SamplePosition origin = position(area, input.pattern[static_cast<size_t>(s)]);
+    rasterize(input, origin);
+    if (s == 0) write_depth_and_id(input, area);
+    if (s == 0 && !input.previous.empty()) write_previous(input, area, origin);
+    if (!wants_color(input, 0) && !wants_color(input, 1)) return;
+    const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+    if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
+    for (int r = 0; r < n_renderings; ++r) {
+      if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() and blend() use them up
+      n_packs_ = n_packs;
+      const ShadePass pass{r, s, n_samples, origin, false};
+      for (int c = 0; c < 3; ++c) std::fill_n(colors_ + c * kTilePixels, kTilePixels, uint16_t{input.background[c]});
+      shade(input, pass, colors_);
+      if (has_blended_) blend(input, pass);
+      add_sample(input, r);
+    }
+  }
+}
+
+void TilePainter::find_transparent(const PaintInput& input) {
+  has_masked_ = has_blended_ = false;
+  if (!input.has_transparent) return;
+  for (const RasterTriangle* triangle : triangles_) {
+    const AlphaMode alpha = (*input.surfaces[0])[triangle->state[0]].alpha;
+    has_masked_ = has_masked_ || alpha == AlphaMode::mask;
+    has_blended_ = has_blended_ || alpha == AlphaMode::blend;
+  }
+}
+
+// What is opaque or passes its mask.
 void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
   std::fill_n(depth_, kTilePixels, 1.0f);
   std::fill_n(ids_, kTilePixels, 0u);
-  for (size_t i = 0; i < triangles_.size(); ++i)
-    input.kernels->tile.rasterize(*triangles_[i], static_cast<uint32_t>(i + 1), origin, depth_, ids_);
+  for (size_t i = 0; i < triangles_.size(); ++i) {
+    const auto number = static_cast<uint32_t>(i + 1);
+    if (has_masked_ || has_blended_) {
+      const Surface& surface = (*input.surfaces[0])[triangles_[i]->state[0]];
+      if (surface.alpha == AlphaMode::mask) rasterize_mask(input, number, surface, {0, 0, 1, origin, false});
+      if (surface.alpha != AlphaMode::opaque) continue;
+    }
+    input.kernels->tile.rasterize(*triangles_[i], number, origin, depth_, ids_);
+  }
+}
+
+// Packs of the samples where one triangle is nearer than depth_ -> packs_; their depths -> own_depth_.
+int TilePainter::visible_packs(const PaintInput& input, const RasterTriangle& triangle, SamplePosition origin) {
+  const int tile_x = origin.x >> 8, tile_y = origin.y >> 8;
+  const int x0 = std::max(triangle.min_x - tile_x, 0) & ~7, x1 = std::min(triangle.max_x - tile_x, kTileSize - 1);
+  const int y0 = std::max(triangle.min_y - tile_y, 0), y1 = std::min(triangle.max_y - tile_y, kTileSize - 1);
+  if (x0 > x1 || y0 > y1) return 0;
+  const int width = (x1 - x0) / 8 * 8 + 8;
+  for (int y = y0; y <= y1; ++y) {
+    std::copy_n(depth_ + y * kTileSize + x0, width, own_depth_ + y * kTileSize + x0);
+    std::fill_n(own_ids_ + y * kTileSize + x0, width, 0u);
+  }
+  input.kernels->tile.rasterize(triangle, 1, origin, own_depth_, own_ids_);
+  const RasterTriangle* const only = &triangle;
+  const int n = input.kernels->tile.collect_packs(own_ids_ + y0 * kTileSize + x0, width, y1 - y0 + 1, &only, packs_);
+  for (int i = 0; i < n; ++i) {
+    packs_[i].x = static_cast<uint8_t>(packs_[i].x + x0);
+    packs_[i].y = static_cast<uint8_t>(packs_[i].y + y0);
+  }
+  return n;
+}
+
+void TilePainter::rasterize_mask(const PaintInput& input, uint32_t number, const Surface& surface,
+                                 const ShadePass& pass) {
+  const int n = visible_packs(input, *triangles_[number - 1], pass.origin);
+  for (int first = 0; first < n; first += kBatchPacks)
+    shader_.cut_out(input.kernels->tile, surface, pass, packs_ + first, std::min(kBatchPacks, n - first));
+  for (int i = 0; i < n; ++i) {
+    const int at = packs_[i].y * kTileSize + packs_[i].x;
+    for (int k = 0; k < 8; ++k) {
+      if ((packs_[i].mask >> k & 1) == 0) continue;
+      depth_[at + k] = own_depth_[at + k];
+      ids_[at + k] = number;
+    }
+  }
 }
 
 // Packs of one batch state together, in calls of up to kBatchPacks.
-void TilePainter::shade(const PaintInput& input, const Pass& pass) {
-  const int rendering = pass.rendering;
-  const std::vector<Surface>& surfaces = *input.surfaces[rendering];
+void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums) {
+  const std::vector<Surface>& surfaces = *input.surfaces[pass.rendering];
   for (int left = n_packs_; left > 0;) {
-    const uint32_t state = packs_[0].triangle->state[rendering];
+    const uint32_t state = packs_[0].triangle->state[pass.rendering];
     int n = 0, rest = 0;
     for (int i = 0; i < left; ++i) {
       const LanePack pack = packs_[i];
-      if (pack.triangle->state[rendering] == state)
+      if (pack.triangle->state[pass.rendering] == state)
         batch_[n++] = pack;
       else
         packs_[rest++] = pack;
     }
     left = rest;
-    for (int i = 0; i < n; i += kBatchPacks)
-      shade_batch(input, pass, surfaces[state], batch_ + i, std::min(kBatchPacks, n - i));
+    for (int i = 0; i < n; i += kBatchPacks) {
+      const int count = std::min(kBatchPacks, n - i);
+      const ShadedBatch shaded = shader_.shade(input.kernels->tile, surfaces[state], pass, batch_ + i, count);
+      input.kernels->tile.accumulate(batch_ + i, count, pass.weighted, shaded.color, shaded.texels, shaded.added,
+                                     input.background, sums);
+    }
   }
 }
 
-// The rays to lights with a size, and into the sky, are shared out among the places where a pixel is shaded.
-const float* TilePainter::cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface,
-                                          const LanePack* packs, int n) {
-  if (surface.shadows == nullptr) return nullptr;
-  uint8_t masks[kBatchPacks];
-  for (int i = 0; i < n; ++i) masks[i] = packs[i].mask;
-  const int n_rays = std::max(surface.shadows->samples.count / pass.count, 1);
-  cast_shadows(*surface.shadows, input.kernels->tile, surface.lighting, n, masks, {pass.number * n_rays, n_rays},
-               rows_ + surface.layout.normal * kBatchLanes, rows_ + surface.layout.position * kBatchLanes, visibility_);
-  return visibility_;
+// Transparent triangles over colors_, in the order of the scene.
+void TilePainter::blend(const PaintInput& input, const ShadePass& pass) {
+  for (const RasterTriangle* triangle : triangles_) {
+    if ((*input.surfaces[0])[triangle->state[0]].alpha != AlphaMode::blend) continue;
+    const Surface& surface = (*input.surfaces[pass.rendering])[triangle->state[pass.rendering]];
+    const int n = visible_packs(input, *triangle, pass.origin);
+    for (int i = 0; i < n; i += kBatchPacks) {
+      const int count = std::min(kBatchPacks, n - i);
+      const ShadedBatch shaded = shader_.shade(input.kernels->tile, surface, pass, packs_ + i, count);
+      input.kernels->tile.blend(packs_ + i, count, shaded.color, shaded.texels, shaded.added, shaded.alpha, colors_);
+    }
+  }
 }
 
-void TilePainter::shade_batch(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs,
-                              int n) {
-  const TileKernels& kernels = input.kernels->tile;
-  const AttributeLayout& layout = surface.layout;
-  const bool textured = layout.uv >= 0;
-  InterpolateTarget target{pass.rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
-  if (textured) {
-    target.lod = lod_;
-    target.width = static_cast<float>(surface.sampler.width[0]);
-    target.height = static_cast<float>(surface.sampler.height[0]);
-  }
-  kernels.interpolate(packs, n, pass.origin, target);
-  const auto row = [&](int attribute) { return rows_ + attribute * kBatchLanes; };
-  const float* specular = layout.specular >= 0 ? row(layout.specular) : nullptr;
-  if (layout.normal >= 0) {
-    const float* visibility = cast_shadows_of(input, pass, surface, packs, n);
-    kernels.light(surface.lighting, 8 * n, row(layout.normal), row(layout.position), visibility, rows_, specular_);
-    if (surface.lighting.has_specular != 0) specular = specular_;
-  }
-  if (textured) kernels.sample_texture(surface.sampler, 8 * n, row(layout.uv), row(layout.uv + 1), lod_, texels_);
-  kernels.accumulate(packs, n, pass.weighted, rows_, textured ? texels_ : nullptr, specular, input.background,
-                     sums_[pass.rendering]);
+// Sums start at the background's.
+void TilePainter::add_sample(const PaintInput& input, int rendering) {
+  for (int c = 0; c < 3; ++c)
+    for (int i = c * kTilePixels; i < (c + 1) * kTilePixels; ++i)
+      sums_[rendering][i] = static_cast<uint16_t>(sums_[rendering][i] + colors_[i] - input.background[c]);
 }
 
 void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {

@@ -1,10 +1,12 @@
-// The back end: one tile at a time, visibility first, then each covered sample shaded once, then the box filter.
+// The back end: one tile at a time, visibility first, then each covered sample shaded once, then what is transparent
+// over it, then the box filter.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "base/kernels/kernels.h"
+#include "raster/batch_shader.h"
 #include "raster/draw_list.h"
 #include "raster/renderer.h"
 #include "raster/sample_pattern.h"
@@ -19,6 +21,7 @@ struct PaintInput {
   int width, height;
   const std::vector<Surface>* surfaces[2];  // [1] null: one rendering
   int shading_samples[2];                   // of each rendering, as RenderQuality
+  bool has_transparent;                     // some material's alpha is not opaque
   uint8_t background[3];
   RgbView color[2];
   RgbView difference;  // only with two renderings
@@ -45,13 +48,6 @@ class TilePainter {
     SampleOffset place;
     int number;  // of the group among all of the pixel
   };
-  // What one pass over the tile shades.
-  struct Pass {
-    int rendering;
-    int number, count;  // of shading groups a pixel
-    SamplePosition origin;
-    bool weighted;  // the packs' lanes stand for several samples
-  };
   static bool wants_color(const PaintInput& input, int rendering);
   static SamplePosition position(const Area& area, SampleOffset offset);
   void shade_first_sample(const PaintInput& input, const Area& area);
@@ -59,11 +55,14 @@ class TilePainter {
   void shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample);
   int list_groups(int shading_samples, int first_sample, ShadingGroup groups[kGridSamples]) const;
   void write_first_sample(const PaintInput& input, const Area& area);
+  void paint_samples(const PaintInput& input, const Area& area);
+  void find_transparent(const PaintInput& input);
   void rasterize(const PaintInput& input, SamplePosition origin);
-  void shade(const PaintInput& input, const Pass& pass);
-  void shade_batch(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs, int n);
-  const float* cast_shadows_of(const PaintInput& input, const Pass& pass, const Surface& surface, const LanePack* packs,
-                               int n);
+  void rasterize_mask(const PaintInput& input, uint32_t number, const Surface& surface, const ShadePass& pass);
+  int visible_packs(const PaintInput& input, const RasterTriangle& triangle, SamplePosition origin);
+  void shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
+  void blend(const PaintInput& input, const ShadePass& pass);
+  void add_sample(const PaintInput& input, int rendering);
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
   void write_previous(const PaintInput& input, const Area& area, SamplePosition origin);
   void write_color(const PaintInput& input, const Area& area) const;
@@ -71,11 +70,13 @@ class TilePainter {
   alignas(64) float depth_[kTilePixels];
   alignas(64) uint32_t ids_[kTilePixels];  // 1 + index into triangles_; 0 = background
   alignas(64) uint16_t sums_[2][3 * kTilePixels];
-  alignas(64) float rows_[kMaxAttributes * kBatchLanes];
-  alignas(64) float lod_[kBatchLanes];
-  alignas(64) float texels_[3 * kBatchLanes];
-  alignas(64) float specular_[3 * kBatchLanes];
-  alignas(64) float visibility_[(kMaxKernelLights + 1) * kBatchLanes];
+  alignas(64) float rows_[4 * kBatchLanes];
+  BatchShader shader_;
+  // Of tiles with masked or transparent triangles.
+  bool has_masked_ = false, has_blended_ = false;
+  alignas(64) float own_depth_[kTilePixels];      // of one triangle alone, where it is nearer than depth_ ...
+  alignas(64) uint32_t own_ids_[kTilePixels];     // ... and 1 there
+  alignas(64) uint16_t colors_[3 * kTilePixels];  // of one sample
   std::vector<const RasterTriangle*> triangles_;
   alignas(64) uint32_t whole_[kTilePixels];
   alignas(64) float near_z_[kTilePixels], far_z_[kTilePixels];

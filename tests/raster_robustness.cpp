@@ -386,4 +386,91 @@ TEST_CASE("a hundred thousand triangles in one pixel, and a thousand materials")
   CHECK(drawn.stats.triangles_submitted == 100000);
 }
 
+// The room with every map, masks, panes, reflections and fog.
+Scene rich_room() {
+  Scene scene = small_room();
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    Material& m = scene.materials[i];
+    m.normal_texture = static_cast<int32_t>((i + 1) % 6);
+    m.specular_texture = static_cast<int32_t>((i + 2) % 6);
+    m.emission_texture = static_cast<int32_t>((i + 3) % 6);
+    m.emission = glm::vec3(0.3f);
+    m.reflection = glm::vec3(0.2f);
+    m.anisotropy = 1 + static_cast<int>(i);
+    m.alpha = static_cast<AlphaMode>(i % 3);
+    m.opacity = 0.7f;
+  }
+  scene.environment = 5;
+  scene.fog = {Fog::Kind::exponential, {0.4f, 0.5f, 0.6f}, 0, 9, 0.1f};
+  return scene;
+}
+
+TEST_CASE(
+    "maps, masks, panes, fog and shadow maps over numbers that are not finite, or huge, draw the same everywhere") {
+  const float bad[] = {kNan, kInfinity, -kInfinity, 1e30f, -1e9f, 1e-40f, 0.0f};
+  for (const float value : bad) {
+    CAPTURE(value);
+    Scene scene = rich_room();
+    Random random(6);
+    for (Vertex& v : scene.mesh.vertices) {
+      if (random.bits() % 20 == 0) v.normal[random.bits() % 3] = value;
+      if (random.bits() % 20 == 0) v.texcoord[random.bits() % 2] = value;
+      if (random.bits() % 60 == 0) v.position[random.bits() % 3] = value;
+      if (random.bits() % 20 == 0) v.color[3] = 0;
+    }
+    draw_all_ways(scene, test_scenes::room_camera());
+    Material& m = scene.materials[0];
+    m.normal_scale = m.opacity = m.alpha_cutoff = m.reflection_blur = m.reflection.x = m.emission.y = value;
+    scene.materials[2].opacity = scene.materials[1].alpha_cutoff = value;
+    scene.fog.start = value;
+    scene.fog.density = value;
+    draw_all_ways(scene, test_scenes::room_camera());
+    scene.fog.kind = Fog::Kind::linear;
+    draw_all_ways(scene, test_scenes::room_camera());
+    scene.lights.push_back({Light::Kind::directional, {value, -1, 0.2f}, {}, {1, 1, 1}, 0});
+    scene.lights.push_back({Light::Kind::spot, {0.1f, -1, value}, {0, 3.5f, value}, {1, 1, 1}, 0, 0.9f, value});
+    RenderQuality quality;
+    quality.lighting = Lighting::shadow_maps;
+    quality.shadow_map_side = 64;
+    const Drawn reference = draw(scene, test_scenes::room_camera(), quality, Isa::scalar);
+    REQUIRE(reference.ok);
+    CHECK(draw(scene, test_scenes::room_camera(), quality).hash == reference.hash);
+  }
+}
+
+TEST_CASE("texture coordinates without area, empty and one-texel maps: defined pictures") {
+  Scene scene = rich_room();
+  for (size_t i = 0; i < scene.mesh.vertices.size(); i += 2) scene.mesh.vertices[i].texcoord[0] = 0;
+  for (Vertex& v : scene.mesh.vertices) v.texcoord[1] = 0.5f;
+  draw_all_ways(scene, test_scenes::room_camera());
+  scene.textures[1] = make_texture("empty", RgbaImage());
+  scene.textures[2] = test_scenes::pattern_texture(1, 1, 4);
+  scene.textures[5] = test_scenes::pattern_texture(1, 3, 4);
+  draw_all_ways(scene, test_scenes::room_camera());
+  scene.textures[5] = make_texture("empty", RgbaImage());
+  draw_all_ways(scene, test_scenes::room_camera());
+}
+
+TEST_CASE("maps and environments that do not exist are corrupt; sides of shadow maps are clamped") {
+  const auto error = [](auto&& change) {
+    Scene scene = rich_room();
+    change(scene);
+    return draw(scene, test_scenes::room_camera()).error;
+  };
+  CHECK(error([](Scene& s) { s.materials[0].normal_texture = 6; }) == Error::corrupt);
+  CHECK(error([](Scene& s) { s.materials[0].specular_texture = -2; }) == Error::corrupt);
+  CHECK(error([](Scene& s) { s.materials[0].emission_texture = INT32_MAX; }) == Error::corrupt);
+  CHECK(error([](Scene& s) { s.environment = 6; }) == Error::corrupt);
+  Scene scene = rich_room();
+  scene.lights.push_back({Light::Kind::directional, {0, -1, 0.2f}, {}, {1, 1, 1}, 0});
+  RenderQuality quality;
+  quality.lighting = Lighting::shadow_maps;
+  for (const int side : {-5, 0, 33, 100}) {
+    quality.shadow_map_side = side;
+    CHECK(draw(scene, test_scenes::room_camera(), quality).ok);
+  }
+  scene.mesh = {};
+  CHECK(draw(scene, test_scenes::room_camera(), quality).ok);
+}
+
 }  // namespace

@@ -16,7 +16,7 @@ constexpr int kTileSize = 32;     // pixels a side; a tile's buffers are row-maj
 constexpr int kBatchLanes = 256;  // lanes that one call shades; a multiple of 8
 constexpr int kBatchPacks = kBatchLanes / 8;
 constexpr int kMaxMipLevels = 16;     // sides up to 32768
-constexpr int kMaxAttributes = 11;    // colour 3, texture coordinates 2, normal 3, position 3
+constexpr int kMaxAttributes = 18;    // color 3, texture coordinates 2, opacity 1, normal 3, position 3, tangents 6
 constexpr int kMaxKernelLights = 16;  // lights that one scene may have
 
 // A triangle on the sample grid. Corners are ordered so that area2 > 0. Edge function i is opposite to corner i and
@@ -77,6 +77,21 @@ struct InterpolateTarget {
   float lod_bias;
 };
 
+// Rows that footprint() writes: how far one pixel reaches in a texture. A pixel's footprint is the parallelogram of the
+// screen derivatives d(uv)/dx and d(uv)/dy; its longer side is the major axis.
+struct FootprintTarget {
+  int rendering;        // as in InterpolateTarget
+  int uv;               // number of the attribute u; v follows
+  float width, height;  // of level 0
+  float lod_bias;       // added to the level of detail
+  float scale;          // of the footprint: the distance in pixels of the places where a pixel is shaded
+  float max_probes;     // whole number, >= 1
+  float* lod;           // log2 of (length of the major axis in texels of level 0 / probes), plus lod_bias
+  // Null, or: the major axis in units of u and v times `scale` (magnitudes up to 2^20), and the number of probes along
+  // it, a whole number: the ratio of the axes' lengths rounded up, at most max_probes and at most one a texel.
+  float *axis_u, *axis_v, *probes;
+};
+
 // A mip chain. Texels are 4 bytes RGBA. Each row of a level is followed by a copy of its first texel, so that two
 // horizontal neighbours are one 8-byte load.
 struct TextureSampler {
@@ -111,6 +126,25 @@ struct LightingParameters {
   int32_t has_specular;  // 0: specular rows are not written
   int32_t light_count;
   KernelLight lights[kMaxKernelLights];
+};
+
+// Fog between the eye and a point at distance d: the share exp2(-(d * rate)^power) of its light arrives, or where
+// power = 0 the share (end - d) * rate, clamped to [0, 1]; the rest is the fog's color (255 = full).
+struct FogParameters {
+  float eye[3];
+  float color[3];
+  float end, rate;
+  int32_t power;  // 0 linear, 1, 2
+};
+
+// Depths of what a light sees first, row-major, `side` texels square. A world position p and its unit normal n are
+// looked up at q = p + normal_offset * n, column x = (m[0] . (q, 1)) / w, row y = (m[1] . (q, 1)) / w, depth
+// z = (m[2] . (q, 1)) / w where w = m[3] . (q, 1); texel (i, j) has its center at (i + 0.5, j + 0.5).
+struct ShadowMap {
+  const float* depths;
+  int32_t side;  // 1..16384
+  float m[4][4];
+  float normal_offset, depth_bias;
 };
 
 // Triangles in a bounding volume hierarchy, for rays. The left child of an inner node follows it, the right one is at
@@ -174,6 +208,39 @@ struct TileKernels {
   void (*sample_texture)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,
                          float* texels);
 
+  // How far each lane of 8 * n lanes reaches in a texture.
+  void (*footprint)(const LanePack* packs, int n, SamplePosition origin, const FootprintTarget& target);
+
+  // Mean of `probes` texels (as sample_texture's) at even steps along the axis, centered on (u, v); probes: 1..16.
+  void (*sample_anisotropic)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,
+                             const float* axis_u, const float* axis_v, const float* probes, float* texels);
+
+  // The filtered fourth channel, in [0, 255].
+  void (*sample_alpha)(const TextureSampler& texture, int n, const float* u, const float* v, const float* lod,
+                       float* alpha);
+
+  // Normals of n lanes (rounded up to 8) bent by texels of a normal map, (channel - 128) / 127 each: the sum of
+  // scale * red * t, scale * green * b and blue * n, where n is the unit normal, t and b the parts of tangent (3 rows)
+  // and bitangent (the next 3) orthogonal to n, of unit length. Where the normal, t or b has no direction: unchanged.
+  void (*bend_normals)(int n, float scale, const float* texels, const float* tangents, float* normal);
+
+  // Where the view reflected at `normal` (3 rows, any length) meets an environment with y up, stored by longitude and
+  // latitude: u = 0.5 + azimuth / (2 pi), 0 at -z and growing towards +x; v = angle from +y / pi. Both in [0, 1].
+  void (*reflect)(const float eye[3], int n, const float* normal, const float* position, float* u, float* v);
+
+  // color becomes color * texel / 255 + specular, clamped to 0..255, seen through fog. texels, specular: or null.
+  void (*fog)(const FogParameters& parameters, int n, const float* position, const float* texels, const float* specular,
+              float* color);
+
+  // Percentage-closer filtering: the share in [0, 1] of the map's texels around each of n lanes that are not nearer to
+  // the light, 4x4 of them with the weights of a 3x3 box moved by fractions of a texel. 1 outside the map.
+  void (*shadow_map)(const ShadowMap& map, int n, const float* normal, const float* position, float* share);
+
+  // Lays color * texel / 255 + specular (clamped to 0..255) times alpha in [0, 1] (a row, clamped) over the colors in
+  // the masks, of which `colors` holds 3 planes of kTileSize^2 in 0..255; rounded. texels, specular: 3 rows or null.
+  void (*blend)(const LanePack* packs, int n, const float* color, const float* texels, const float* specular,
+                const float* alpha, uint16_t* colors);
+
   // Rounds color * texel / 255 + specular to 0..255 and adds it minus `background`, as often as the lane's weight says
   // where `weighted`, to the accumulators of the pixels in the masks. texels, specular: 3 rows or null. sums: 3 planes
   // of kTileSize^2; modulo 2^16.
@@ -187,6 +254,8 @@ struct TileKernels {
 // One per instruction set: overwrites the entries that it improves.
 void fill_tile_scalar(TileKernels& table);
 void fill_grid_scalar(TileKernels& table);
+void fill_shade_scalar(TileKernels& table);    // shade_scalar.cpp: lights, shadows, normals, fog
+void fill_texture_scalar(TileKernels& table);  // texture_scalar.cpp
 void fill_tile_sse41(TileKernels& table);
 void fill_tile_avx2(TileKernels& table);
 void fill_tile_neon(TileKernels& table);

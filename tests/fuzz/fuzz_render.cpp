@@ -49,7 +49,7 @@ Scene scene_from(Source& source) {
   const int flags = source.byte();
   RgbaImage image(3, 5);
   for (int y = 0; y < 5; ++y)
-    for (int x = 0; x < 12; ++x) image.view().row(y)[x] = static_cast<uint8_t>(37 * x + 91 * y);
+    for (int x = 0; x < 12; ++x) image.view().row(y)[x] = static_cast<uint8_t>(37 * x + 91 * y);  // alpha, too
   scene.textures.push_back(make_texture("t", image));
   for (int i = 0; i < 2; ++i) {
     Material material;
@@ -60,6 +60,25 @@ Scene scene_from(Source& source) {
     material.specular = glm::vec3((flags >> 4 & 1) != 0 ? 0.5f : 0.0f);
     material.shininess = source.byte();
     scene.materials.push_back(material);
+  }
+  if (const int maps = source.byte(); maps != 0) {
+    for (int i = 0; i < 2; ++i) {
+      Material& material = scene.materials[static_cast<size_t>(i)];
+      material.anisotropy = maps & 7;
+      material.alpha = static_cast<AlphaMode>((maps >> 3 & 3) % 3);
+      material.normal_texture = (maps >> 5 & 1) - 1;
+      material.specular_texture = material.emission_texture = (maps >> 6 & 1) - 1;
+      material.emission = material.reflection = vector_from(source);
+      material.opacity = source.number();
+      material.alpha_cutoff = source.number();
+      material.normal_scale = source.number();
+      material.reflection_blur = source.number();
+    }
+    scene.environment = (maps >> 7 & 1) - 1;
+    scene.fog.kind = static_cast<Fog::Kind>(source.byte() & 3);
+    scene.fog.start = source.number();
+    scene.fog.end = source.number();
+    scene.fog.density = source.number();
   }
   for (int i = flags >> 5 & 3; i > 0; --i) {
     Light light;
@@ -138,6 +157,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   quality.cull_back_faces = (flags & 16) != 0;
   quality.lighting = (flags & 32) != 0 ? Lighting::full : Lighting::local;
   quality.light_samples = 4;
+  if ((flags & 96) == 96) quality.lighting = Lighting::shadow_maps;
+  quality.shadow_map_side = 64;
   Camera camera = make_camera({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 0.9f, float{kWidth} / kHeight, 0.5f, 20.0f);
   if ((flags & 64) != 0) camera = make_camera(vector_from(source), {0, 0, 0}, {0, 1, 0}, 1.5f, 1.2f, 0.01f, 9.0f);
   if ((flags & 128) != 0) camera.clip_from_world[source.byte() % 4][source.byte() % 4] = source.number();

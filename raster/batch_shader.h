@@ -1,0 +1,62 @@
+// Colors of a batch of samples of one material: interpolate -> light -> texture -> maps -> fog.
+#pragma once
+
+#include "base/kernels/tile_kernels.h"
+#include "raster/surface.h"
+
+namespace pac::raster {
+
+// Which samples a batch belongs to.
+struct ShadePass {
+  int rendering;      // which of RasterTriangle::attributes
+  int number, count;  // of the places where a pixel is shaded
+  SamplePosition origin;
+  bool weighted;  // the packs' lanes stand for several samples
+};
+
+// Rows of kBatchLanes for accumulate() and blend(): color * texel / 255 + added, clamped. Valid until the next call.
+struct ShadedBatch {
+  const float* color;
+  const float* texels;  // or null
+  const float* added;   // highlights, glow, reflections; or null
+  const float* alpha;   // opacity in [0, 1]; null for opaque materials
+};
+
+// The working memory of one thread.
+class BatchShader {
+ public:
+  // Shades n <= kBatchPacks packs whose triangles all have `surface`.
+  ShadedBatch shade(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, const LanePack* packs,
+                    int n);
+  // Takes the samples whose opacity is below the cutoff off the packs' masks. The surface's alpha is AlphaMode::mask.
+  void cut_out(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, LanePack* packs, int n);
+
+ private:
+  // What the steps of one call share.
+  struct Batch {
+    const TileKernels& kernels;
+    const Surface& surface;
+    const ShadePass& pass;
+    const LanePack* packs;
+    int n;
+  };
+  float* row(int attribute) { return rows_ + attribute * kBatchLanes; }
+  void sample_base(const Batch& batch);
+  void sample_map(const Batch& batch, const TextureSampler& sampler);
+  const float* light(const Batch& batch);
+  const float* cast(const Batch& batch);
+  const float* add_maps(const Batch& batch, const float* added);
+  const float* opacity(const Batch& batch);
+
+  alignas(64) float rows_[kMaxAttributes * kBatchLanes];
+  alignas(64) float lod_[kBatchLanes];
+  alignas(64) float texels_[3 * kBatchLanes];
+  alignas(64) float specular_[3 * kBatchLanes];
+  alignas(64) float visibility_[(kMaxKernelLights + 1) * kBatchLanes];
+  alignas(64) float map_[3 * kBatchLanes];        // texels of a map
+  alignas(64) float footprint_[3 * kBatchLanes];  // axis, number of probes; of reflections: u and v
+  alignas(64) float map_lod_[kBatchLanes];
+  alignas(64) float alpha_[kBatchLanes];
+};
+
+}  // namespace pac::raster
