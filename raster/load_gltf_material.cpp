@@ -50,6 +50,8 @@ class Materials {
   };
   Result<GltfMaterial> load(const Json& json);
   Result<void> load_texture(const Json& info, GltfMaterial& out);
+  Result<int32_t> load_map(const Json& info, bool& has_coordinates, GltfMaterial& out);
+  int32_t gloss_texture(int32_t metal_map, const double factors[2], const GltfMaterial& out);
   Result<void> load_transform(const Json& transform, GltfMaterial& out);
   Result<int32_t> image_texture(uint32_t image, bool mirror_s, bool mirror_t);
   Result<Bytes> image_bytes(uint32_t image, const char*& fault);
@@ -71,15 +73,18 @@ Result<GltfMaterial> Materials::load(const Json& json) {
   PAC_CHECK(get_numbers(file_, json, "emissiveFactor", emissive, 3));
   metallic[0] = std::clamp(pbr["metallicFactor"].number(json.exists() ? 1 : 0), 0.0, 1.0);
   roughness[0] = std::clamp(pbr["roughnessFactor"].number(1), 0.0, 1.0);
-  // The texture of metalness and roughness is not sampled; where there is one, factors of 1 say nothing.
-  if (pbr["metallicRoughnessTexture"].exists()) {
-    metallic[0] *= 0.5;
-    roughness[0] *= 0.7;
-    warn("metallic-roughness texture is not sampled", json, json["name"].text());
-  }
   GltfMaterial out;
   Material& look = out.material;
   look.name = std::string(json["name"].text());
+  PAC_CHECK(load_texture(pbr["baseColorTexture"], out));
+  bool has_coordinates = look.texture >= 0;
+  PAC_TRY(const int32_t metal_map, load_map(pbr["metallicRoughnessTexture"], has_coordinates, out));
+  const double factors[2] = {metallic[0], roughness[0]};
+  if (metal_map >= 0) {  // one exponent and one diffuse color a material: by the means
+    const auto mean = loaded_.scene.textures[static_cast<size_t>(metal_map)].mean_color();
+    metallic[0] *= mean[2] / 255.0;
+    roughness[0] *= mean[1] / 255.0;
+  }
   look.lit = !json["extensions"]["KHR_materials_unlit"].exists();
   look.two_sided = json["doubleSided"].boolean(false);
   // Lobe: Phong's exponent of a Beckmann-like roughness alpha = roughness^2, 2 / alpha^2 - 2.
@@ -94,14 +99,68 @@ Result<GltfMaterial> Materials::load(const Json& json) {
     look.specular[c] = gloss * (0.25f * (1 - metal) + color * metal);
     look.emission[c] = encoded(emissive[c]);
   }
-  if (json["emissiveTexture"].exists() && look.emission != glm::vec3(0)) {
-    look.emission = glm::vec3(0);
-    warn("emissive texture is not drawn", json, look.name);
+  if (metal_map >= 0) {
+    look.specular_texture = gloss_texture(metal_map, factors, out);
+    look.specular = glm::vec3(1.0f);
   }
-  if (const std::string_view mode = json["alphaMode"].text(); mode == "BLEND" || mode == "MASK")
-    warn("drawn opaque", json, look.name);
-  PAC_CHECK(load_texture(pbr["baseColorTexture"], out));
+  PAC_TRY(look.emission_texture, load_map(json["emissiveTexture"], has_coordinates, out));
+  PAC_TRY(look.normal_texture, load_map(json["normalTexture"], has_coordinates, out));
+  look.normal_scale = static_cast<float>(std::clamp(json["normalTexture"]["scale"].number(1), -1000.0, 1000.0));
+  const std::string_view mode = json["alphaMode"].text();
+  look.alpha = mode == "BLEND" ? AlphaMode::blend : mode == "MASK" ? AlphaMode::mask : AlphaMode::opaque;
+  look.alpha_cutoff = static_cast<float>(std::clamp(json["alphaCutoff"].number(0.5), 0.0, 2.0));
+  look.opacity = static_cast<float>(std::clamp(base[3], 0.0, 1.0));
   return out;
+}
+
+// A texture besides the base color's, or -1: there is none, it cannot be read, or it wants texture coordinates of its
+// own, of which a vertex has none.
+Result<int32_t> Materials::load_map(const Json& info, bool& has_coordinates, GltfMaterial& out) {
+  if (!info.exists()) return -1;
+  GltfMaterial other;
+  PAC_CHECK(load_texture(info, other));
+  const int32_t number = other.material.texture;
+  if (number < 0 || number == checker_.known_missing()) return -1;
+  if (!has_coordinates) {
+    has_coordinates = true;
+    out.texcoord_set = other.texcoord_set;
+    for (int row = 0; row < 2; ++row) std::copy_n(other.texcoord_map[row], 3, out.texcoord_map[row]);
+    out.material.filter = other.material.filter;
+    out.material.wrap = other.material.wrap;
+    return number;
+  }
+  bool same = out.texcoord_set == other.texcoord_set;
+  for (int row = 0; row < 2; ++row)
+    same = same && std::equal(out.texcoord_map[row], out.texcoord_map[row] + 3, other.texcoord_map[row]);
+  if (same) return number;
+  warn("texture with texture coordinates of its own is not drawn", info, out.material.name);
+  return -1;
+}
+
+// Specular colors from metalness (blue) and roughness (green): gloss times the base color of metal, a quarter of white
+// of other surfaces.
+int32_t Materials::gloss_texture(int32_t metal_map, const double factors[2], const GltfMaterial& out) {
+  const std::vector<Texture>& textures = loaded_.scene.textures;
+  const ConstRgbaView metal = textures[static_cast<size_t>(metal_map)].level(0);
+  const int32_t base = out.material.texture;
+  const ConstRgbaView colors = base >= 0 ? textures[static_cast<size_t>(base)].level(0) : metal;
+  RgbaImage image(metal.width, metal.height);
+  for (int y = 0; y < metal.height; ++y)
+    for (int x = 0; x < metal.width; ++x) {
+      const uint8_t* p = metal.pixel(x, y);
+      const uint8_t* color = colors.pixel(static_cast<int>(int64_t{x} * colors.width / metal.width),
+                                          static_cast<int>(int64_t{y} * colors.height / metal.height));
+      const double m = factors[0] * p[2] / 255.0, gloss = 1 - factors[1] * p[1] / 255.0;
+      for (int c = 0; c < 3; ++c) {
+        const double own = static_cast<double>(out.base_color[c]) * (base >= 0 ? color[c] / 255.0 : 1.0);
+        image.pixel(x, y)[c] =
+            static_cast<uint8_t>(std::clamp(gloss * (0.25 * (1 - m) + own * m), 0.0, 1.0) * 255 + 0.5);
+      }
+      image.pixel(x, y)[3] = 255;
+    }
+  const auto number = static_cast<int32_t>(textures.size());
+  loaded_.scene.textures.push_back(make_texture("gloss of " + out.material.name, image));
+  return number;
 }
 
 Result<void> Materials::load_texture(const Json& info, GltfMaterial& out) {

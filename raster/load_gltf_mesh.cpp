@@ -84,6 +84,8 @@ void append_vertices(const Attributes& a, const Affine& world, const double norm
       const double linear = a.color.width > 0 ? double{a.color.values[a.color.width * i + c]} : 1.0;
       vertex.color[c] = encoded_byte(linear, scale);
     }
+    if (a.color.width == 4)
+      vertex.color[3] = static_cast<uint8_t>(std::clamp(double{a.color.values[4 * i + 3]}, 0.0, 1.0) * 255 + 0.5);
     mesh.vertices.push_back(vertex);
   }
 }

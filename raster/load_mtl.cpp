@@ -19,7 +19,9 @@ class MtlParser {
   void finish();
   void color(std::string_view text, glm::vec3& value);
   float number(std::string_view text, float unchanged);
-  void map(std::string_view text);
+  void map(std::string_view text, MtlMap& out);
+  void side_map(std::string_view text, MtlMap& out);
+  void opacity(float value);
   bool option(std::string_view word, std::string_view& text);
   void pair_of_numbers(std::string_view& text, float values[2]);
   void warn(const char* text) { warnings_.push_back({text, name_, lines_.offset()}); }
@@ -29,7 +31,7 @@ class MtlParser {
   std::vector<Warning>& warnings_;
   std::vector<MtlMaterial> materials_;
   // Of the material at hand.
-  bool has_ambient_ = false, has_diffuse_ = false;
+  bool has_ambient_ = false, has_diffuse_ = false, has_specular_ = false, has_emission_ = false;
   int illumination_model_ = 2;
 };
 
@@ -43,7 +45,7 @@ std::vector<MtlMaterial> MtlParser::run() {
       finish();
       materials_.emplace_back();
       materials_.back().material.name = std::string(trimmed(rest));
-      has_ambient_ = has_diffuse_ = false;
+      has_ambient_ = has_diffuse_ = has_specular_ = has_emission_ = false;
       illumination_model_ = 2;
     } else if (!materials_.empty()) {
       statement(keyword, rest);
@@ -56,7 +58,8 @@ std::vector<MtlMaterial> MtlParser::run() {
 }
 
 void MtlParser::statement(std::string_view keyword, std::string_view rest) {
-  Material& material = materials_.back().material;
+  MtlMaterial& entry = materials_.back();
+  Material& material = entry.material;
   if (keyword == "Ka") {
     color(rest, material.ambient);
     has_ambient_ = true;
@@ -65,17 +68,36 @@ void MtlParser::statement(std::string_view keyword, std::string_view rest) {
     has_diffuse_ = true;
   } else if (keyword == "Ks") {
     color(rest, material.specular);
+    has_specular_ = true;
   } else if (keyword == "Ke") {
     color(rest, material.emission);
+    has_emission_ = true;
   } else if (keyword == "Ns") {
     material.shininess = static_cast<int>(std::clamp(number(rest, 1.0f), 1.0f, 1000.0f) + 0.5f);
   } else if (keyword == "illum") {
     illumination_model_ = static_cast<int>(std::clamp(number(rest, 2.0f), 0.0f, 10.0f));
   } else if (keyword == "map_Kd") {
-    map(rest);
-  } else if ((keyword == "d" && number(rest, 1.0f) < 1.0f) || (keyword == "Tr" && number(rest, 0.0f) > 0.0f)) {
-    warn("transparency is not drawn");
+    map(rest, entry.base);
+  } else if (keyword == "map_Ks") {
+    side_map(rest, entry.specular);
+  } else if (keyword == "map_Ke") {
+    side_map(rest, entry.emission);
+  } else if (keyword == "map_d") {
+    side_map(rest, entry.opacity);
+  } else if (keyword == "map_Bump" || keyword == "map_bump" || keyword == "bump" || keyword == "norm") {
+    side_map(rest, entry.bump);
+  } else if (keyword == "d") {
+    opacity(number(rest, 1.0f));
+  } else if (keyword == "Tr") {
+    opacity(1.0f - number(rest, 0.0f));
   }
+}
+
+// The last of several statements counts.
+void MtlParser::opacity(float value) {
+  Material& material = materials_.back().material;
+  material.opacity = std::clamp(value, 0.0f, 1.0f);
+  material.alpha = material.opacity < 1.0f ? AlphaMode::blend : AlphaMode::opaque;
 }
 
 // What depends on several statements of one material.
@@ -83,12 +105,15 @@ void MtlParser::finish() {
   if (materials_.empty()) return;
   MtlMaterial& entry = materials_.back();
   Material& material = entry.material;
-  if (!entry.texture_name.empty() && (!has_diffuse_ || material.diffuse == glm::vec3(0.0f))) {
+  if (!entry.base.name.empty() && (!has_diffuse_ || material.diffuse == glm::vec3(0.0f))) {
     if (has_diffuse_) warn("black material with a texture: drawn white");
     material.diffuse = glm::vec3(1.0f);
     has_ambient_ = false;
   }
   if (!has_ambient_) material.ambient = material.diffuse;
+  if (!entry.specular.name.empty() && !has_specular_) material.specular = glm::vec3(1.0f);
+  if (!entry.emission.name.empty() && (!has_emission_ || material.emission == glm::vec3(0.0f)))
+    material.emission = glm::vec3(1.0f);
   if (illumination_model_ == 0) material.lit = false;
   if (illumination_model_ <= 1) material.specular = glm::vec3(0.0f);
 }
@@ -112,9 +137,8 @@ float MtlParser::number(std::string_view text, float unchanged) {
   return unchanged;
 }
 
-// map_Kd [options] file; the file's name may hold blanks.
-void MtlParser::map(std::string_view text) {
-  MtlMaterial& entry = materials_.back();
+// [options] file; the file's name may hold blanks.
+void MtlParser::map(std::string_view text, MtlMap& out) {
   std::string_view rest = trimmed(text);
   for (;;) {
     std::string_view after = rest;
@@ -127,11 +151,24 @@ void MtlParser::map(std::string_view text) {
     }
     rest = trimmed(rest);
   }
-  entry.texture_name = std::string(rest);
-  std::replace(entry.texture_name.begin(), entry.texture_name.end(), '\\', '/');
-  while (entry.texture_name.starts_with("./")) entry.texture_name.erase(0, 2);
-  entry.texture_offset = lines_.offset();
-  if (entry.texture_name.empty()) warn("texture without a name");
+  out.name = std::string(rest);
+  std::replace(out.name.begin(), out.name.end(), '\\', '/');
+  while (out.name.starts_with("./")) out.name.erase(0, 2);
+  out.offset = lines_.offset();
+  if (out.name.empty()) warn("texture without a name");
+}
+
+// The vertices have one set of texture coordinates: map_Kd's.
+void MtlParser::side_map(std::string_view text, MtlMap& out) {
+  MtlMaterial& entry = materials_.back();
+  const Wrap wrap = entry.material.wrap;
+  float scale[2], offset[2];
+  std::copy_n(entry.texcoord_scale, 2, scale);
+  std::copy_n(entry.texcoord_offset, 2, offset);
+  map(text, out);
+  entry.material.wrap = wrap;
+  std::copy_n(scale, 2, entry.texcoord_scale);
+  std::copy_n(offset, 2, entry.texcoord_offset);
 }
 
 // Up to three numbers, of which two matter.
@@ -160,8 +197,11 @@ bool MtlParser::option(std::string_view word, std::string_view& text) {
   } else if (word == "-mm") {
     take_word(text);
     take_word(text);
-  } else if (word == "-blendu" || word == "-blendv" || word == "-cc" || word == "-texres" || word == "-bm" ||
-             word == "-boost" || word == "-imfchan" || word == "-type") {
+  } else if (word == "-bm") {
+    float value = 1;
+    if (parse_float(take_word(text), value) == NumberKind::finite) entry.bump_scale = value;
+  } else if (word == "-blendu" || word == "-blendv" || word == "-cc" || word == "-texres" || word == "-boost" ||
+             word == "-imfchan" || word == "-type") {
     take_word(text);
   } else {
     return false;

@@ -82,6 +82,7 @@ class SceneBuilder {
 
  private:
   void add_materials();
+  void load_maps(MtlMaterial& source);
   void generate_normals();
   void add_face(const ObjFace& face);
   uint32_t vertex_of(uint32_t corner, uint32_t material);
@@ -109,8 +110,7 @@ void SceneBuilder::add_materials() {
     MtlMaterial source;
     if (const MtlMaterial* found = libraries.find(name); found != nullptr) {
       source = *found;
-      if (!source.texture_name.empty())
-        source.material.texture = textures_.load(source.texture_name, source.texture_offset);
+      load_maps(source);
     } else {
       source.material.ambient = source.material.diffuse = glm::vec3(file_.colors.empty() ? 0.8f : 1.0f);
       if (!name.empty()) {
@@ -122,6 +122,29 @@ void SceneBuilder::add_materials() {
     loaded_.scene.materials.push_back(source.material);
     sources_.push_back(std::move(source));
   }
+}
+
+// Maps other than the base texture are left out where they are missing.
+void SceneBuilder::load_maps(MtlMaterial& source) {
+  Material& material = source.material;
+  const auto load = [&](const MtlMap& map) {
+    const int32_t number = map.name.empty() ? -1 : textures_.load(map.name, map.offset);
+    return number >= 0 && number == textures_.known_missing() ? -1 : number;
+  };
+  if (!source.base.name.empty()) material.texture = textures_.load(source.base.name, source.base.offset);
+  material.specular_texture = load(source.specular);
+  material.emission_texture = load(source.emission);
+  if (!source.emission.name.empty() && material.emission_texture < 0) material.emission = glm::vec3(0.0f);
+  if (!source.bump.name.empty()) {
+    material.normal_texture = textures_.load_bump(source.bump.name, source.bump_scale, source.bump.offset);
+    material.normal_scale = 1;
+  }
+  if (source.opacity.name.empty()) return;
+  const int32_t with_alpha = textures_.load_opacity(material.texture, source.opacity.name, source.opacity.offset);
+  if (with_alpha == material.texture) return;
+  material.texture = with_alpha;
+  const bool sharp = material.opacity == 1.0f && is_mask(loaded_.scene.textures[static_cast<size_t>(with_alpha)]);
+  material.alpha = sharp ? AlphaMode::mask : AlphaMode::blend;
 }
 
 void SceneBuilder::generate_normals() {

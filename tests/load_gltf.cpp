@@ -254,6 +254,38 @@ TEST_CASE("texture coordinates obey KHR_texture_transform, mirrored repetition a
   REQUIRE(!missing->warnings.empty());
 }
 
+TEST_CASE("normal, emissive and metallic-roughness textures, alpha modes and opacity arrive") {
+  if (cannot_read()) return;
+  Parts parts = textured("", "");
+  parts.more =
+      ",'materials':[{'pbrMetallicRoughness':{'baseColorTexture':{'index':0},'baseColorFactor':[1,1,1,0.75],"
+      "'metallicRoughnessTexture':{'index':0}},'normalTexture':{'index':0,'scale':0.5},"
+      "'emissiveTexture':{'index':0},'emissiveFactor':[1,0,0],'alphaMode':'MASK','alphaCutoff':0.3},"
+      "{'alphaMode':'BLEND','emissiveTexture':{'index':0,'texCoord':1},'emissiveFactor':[1,1,1],"
+      "'pbrMetallicRoughness':{'baseColorTexture':{'index':0}}}],"
+      "'textures':[{'source':0}],'images':[{'uri':'wood.png'}]";
+  const auto loaded = load(file_of(parts), {{"wood.png", "image"}});
+  REQUIRE(loaded.ok());
+  const pac::raster::Material& all = loaded->scene.materials[0];
+  REQUIRE(all.alpha == pac::raster::AlphaMode::mask);
+  REQUIRE(all.alpha_cutoff == doctest::Approx(0.3));
+  REQUIRE(all.opacity == 0.75f);
+  REQUIRE(all.normal_texture == all.texture);
+  REQUIRE(all.normal_scale == 0.5f);
+  REQUIRE(all.emission_texture == all.texture);
+  REQUIRE(all.emission == glm::vec3(1, 0, 0));
+  REQUIRE(all.specular_texture >= 0);
+  REQUIRE(all.specular_texture != all.texture);
+  REQUIRE(all.specular == glm::vec3(1.0f));
+  const pac::raster::Material& glass = loaded->scene.materials[1];
+  REQUIRE(glass.alpha == pac::raster::AlphaMode::blend);
+  REQUIRE(glass.emission_texture == -1);  // it asks for texture coordinates of its own
+  bool warned = false;
+  for (const auto& warning : loaded->warnings)
+    warned = warned || std::string(warning.text) == "texture with texture coordinates of its own is not drawn";
+  REQUIRE(warned);
+}
+
 Parts animated(const std::string& path, const std::string& interpolation, const std::vector<float>& values,
                const std::string& type) {
   Parts parts;

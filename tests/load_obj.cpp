@@ -220,7 +220,8 @@ TEST_CASE("materials: numbers, names with blanks, options of map_Kd, backslashes
   REQUIRE(red.specular == glm::vec3(0.5f));
   REQUIRE(red.emission == glm::vec3(0, 0.25f, 0));
   REQUIRE(red.shininess == 250);
-  REQUIRE(has_warning(*loaded, "transparency is not drawn"));
+  REQUIRE(red.alpha == pac::raster::AlphaMode::blend);
+  REQUIRE(red.opacity == 0.5f);
   const Material& matte = scene.materials[2];
   REQUIRE(matte.specular == glm::vec3(0.0f));
   REQUIRE(matte.wrap == pac::raster::Wrap::clamp);
@@ -259,6 +260,69 @@ TEST_CASE("nonsense in a material library never stops the loading") {
   const auto loaded = load(kTriangle + "mtllib m.mtl\nusemtl m\nf 1 2 3\n", {{"m.mtl", mtl}});
   REQUIRE(loaded.ok());
   REQUIRE(loaded->warnings.size() > 5);
+}
+
+// Images of 8 x 2 texels: "ramp" grows from left to right, "mask" is black and then white, "colored" is (200, 10, 128).
+pac::raster::AssetSource drawn_assets(const char* mtl) {
+  auto assets = assets_from({{"m.mtl", mtl}, {"ramp", "r"}, {"mask", "m"}, {"colored", "c"}});
+  assets.decode_image = [](std::span<const uint8_t> bytes) -> pac::Result<pac::RgbaImage> {
+    pac::RgbaImage image(8, 2);
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 8; ++x) {
+        uint8_t* p = image.pixel(x, y);
+        const auto grey = static_cast<uint8_t>(bytes[0] == 'r' ? 20 * x : x < 4 ? 0 : 255);
+        p[0] = bytes[0] == 'c' ? 200 : grey;
+        p[1] = bytes[0] == 'c' ? 10 : grey;
+        p[2] = bytes[0] == 'c' ? 128 : grey;
+        p[3] = 255;
+      }
+    return image;
+  };
+  return assets;
+}
+
+TEST_CASE("specular, emission, opacity and bump maps become the material's; heights become slopes") {
+  const char* mtl =
+      "newmtl a\nmap_Kd -s 2 2 2 colored\nmap_Ks -s 9 9 9 ramp\nmap_Ke mask\nmap_d mask\nmap_Bump -bm 8 ramp\n"
+      "newmtl b\nKd 1 1 1\nmap_d ramp\nnorm colored\nd 0.5\n"
+      "newmtl c\nKd 1 1 1\nmap_Ks nothing\nmap_d nothing\nbump nothing\nmap_Ke nothing\n";
+  const std::string text = kTriangle +
+                           "vt 0.5 0.5\nmtllib m.mtl\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n"
+                           "usemtl c\nf 1/1 2/1 3/1\n";
+  const auto loaded = pac::raster::load_obj(bytes_of(text), drawn_assets(mtl));
+  REQUIRE(loaded.ok());
+  const auto& scene = loaded->scene;
+  REQUIRE(scene.materials.size() == 4);
+  const auto texel = [&](int32_t texture, int x) {
+    return scene.textures.at(static_cast<size_t>(texture)).level(0).pixel(x, 0);
+  };
+  const Material& a = scene.materials[1];
+  REQUIRE(a.specular == glm::vec3(1.0f));
+  REQUIRE(a.emission == glm::vec3(1.0f));
+  REQUIRE(texel(a.specular_texture, 3)[0] == 60);
+  REQUIRE(texel(a.emission_texture, 7)[2] == 255);
+  REQUIRE(a.alpha == pac::raster::AlphaMode::mask);
+  REQUIRE(texel(a.texture, 1)[0] == 200);
+  REQUIRE(texel(a.texture, 1)[3] == 0);
+  REQUIRE(texel(a.texture, 6)[3] == 255);
+  const uint8_t* slope = texel(a.normal_texture, 3);  // it rises to the right: the normal leans to the left
+  // Heights of 8 / 64 of the width, 1 texel: 20 / 255 of a texel rise each.
+  REQUIRE(std::abs(slope[0] - (128 - 127 * 20 / 255.0)) < 1.5);
+  REQUIRE(slope[1] == 128);
+  REQUIRE(scene.mesh.vertices[0].texcoord[0] == 1.0f);  // map_Kd's scale alone
+  const Material& b = scene.materials[2];
+  REQUIRE(b.alpha == pac::raster::AlphaMode::blend);
+  REQUIRE(b.opacity == 0.5f);
+  REQUIRE(texel(b.texture, 2)[0] == 255);
+  REQUIRE(texel(b.texture, 2)[3] == 40);
+  REQUIRE(texel(b.normal_texture, 0)[1] == 10);
+  const Material& c = scene.materials[3];
+  REQUIRE(c.specular_texture == -1);
+  REQUIRE(c.normal_texture == -1);
+  REQUIRE(c.emission_texture == -1);
+  REQUIRE(c.texture == -1);
+  REQUIRE(c.alpha == pac::raster::AlphaMode::opaque);
+  REQUIRE(has_warning(*loaded, "texture is missing: checker instead"));
 }
 
 }  // namespace
