@@ -3,6 +3,10 @@
 //   flags u8 (1 normals, 2 texture coordinates) | vertices, faces, materials, textures, lights: u32 each | ambient 3
 //   f32 | background 3 f32 | vertex: position 3 f32 [normal 3 f32] [texcoord 2 f32] color 4 u8 | face: corners u32,
 //   material u32, vertex numbers u32... | material | texture: levels u8, level: w u32 h u32 RGBA | light
+// and, where flag 4 says that any of it departs from its default: fog kind u8, color 3 f32, start, end, density f32 |
+//   environment u32 | of each material: anisotropy u8, alpha u8, cutoff f32, opacity f32, normal u32, its scale f32,
+//   specular u32, emission u32, reflection 3 f32, its blur f32
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <utility>
@@ -14,7 +18,7 @@ namespace pac::sim {
 
 namespace {
 
-constexpr uint8_t kNormals = 1, kTexcoords = 2;
+constexpr uint8_t kNormals = 1, kTexcoords = 2, kLooks = 4;
 constexpr size_t kMaterialBytes = 60, kLightBytes = 56, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12;
 
 void write_vec3(ByteWriter& writer, const glm::vec3& v) {
@@ -153,6 +157,78 @@ Result<raster::Light> read_light(ByteReader& reader) {
   return light;
 }
 
+bool has_looks(const raster::Scene& scene) {
+  if (scene.fog.kind != raster::Fog::Kind::none || scene.environment >= 0) return true;
+  for (const raster::Material& m : scene.materials)
+    if (m.anisotropy != 1 || m.alpha != raster::AlphaMode::opaque || m.normal_texture >= 0 || m.specular_texture >= 0 ||
+        m.emission_texture >= 0)
+      return true;
+  return false;
+}
+
+// Masks cut where texturing is off, too.
+bool has_masks(const raster::Scene& scene) {
+  for (const raster::Material& material : scene.materials)
+    if (material.alpha == raster::AlphaMode::mask) return true;
+  return false;
+}
+
+void write_looks(ByteWriter& writer, const raster::Scene& scene) {
+  // An empty texture counts as none there, and travels as a grey one.
+  const auto number = [&](int32_t texture) {
+    const bool empty = texture >= 0 && scene.textures[static_cast<size_t>(texture)].empty();
+    return static_cast<uint32_t>(empty ? -1 : texture);
+  };
+  writer.u8(static_cast<uint8_t>(scene.fog.kind));
+  write_vec3(writer, scene.fog.color);
+  for (const float f : {scene.fog.start, scene.fog.end, scene.fog.density}) writer.f32(f);
+  writer.u32(number(scene.environment));
+  for (const raster::Material& m : scene.materials) {
+    writer.u8(static_cast<uint8_t>(std::clamp(m.anisotropy, 1, 8)));
+    writer.u8(static_cast<uint8_t>(m.alpha));
+    writer.f32(m.alpha_cutoff);
+    writer.f32(m.opacity);
+    writer.u32(number(m.normal_texture));
+    writer.f32(m.normal_scale);
+    writer.u32(number(m.specular_texture));
+    writer.u32(number(m.emission_texture));
+    write_vec3(writer, m.reflection);
+    writer.f32(m.reflection_blur);
+  }
+}
+
+Result<int32_t> read_texture_number(ByteReader& reader, uint32_t n_textures) {
+  const size_t at = reader.position();
+  const uint32_t number = reader.u32();
+  if (number != UINT32_MAX && (number >= n_textures || number > INT32_MAX))
+    return Failure{Error::corrupt, at, "material names a texture that does not exist"};
+  return static_cast<int32_t>(number);
+}
+
+Result<void> read_looks(ByteReader& reader, uint32_t n_textures, raster::Scene& scene) {
+  const uint8_t fog = reader.u8();
+  if (fog > 3) return Failure{Error::corrupt, reader.position(), "unknown kind of fog"};
+  scene.fog.kind = static_cast<raster::Fog::Kind>(fog);
+  scene.fog.color = read_vec3(reader);
+  for (float* f : {&scene.fog.start, &scene.fog.end, &scene.fog.density}) *f = reader.f32();
+  PAC_TRY(scene.environment, read_texture_number(reader, n_textures));
+  for (raster::Material& m : scene.materials) {
+    m.anisotropy = reader.u8();
+    const uint8_t alpha = reader.u8();
+    if (alpha > 2) return Failure{Error::corrupt, reader.position(), "material flag out of range"};
+    m.alpha = static_cast<raster::AlphaMode>(alpha);
+    m.alpha_cutoff = reader.f32();
+    m.opacity = reader.f32();
+    PAC_TRY(m.normal_texture, read_texture_number(reader, n_textures));
+    m.normal_scale = reader.f32();
+    PAC_TRY(m.specular_texture, read_texture_number(reader, n_textures));
+    PAC_TRY(m.emission_texture, read_texture_number(reader, n_textures));
+    m.reflection = read_vec3(reader);
+    m.reflection_blur = reader.f32();
+  }
+  return {};
+}
+
 bool any_lit(const raster::Scene& scene) {
   for (const raster::Material& material : scene.materials)
     if (material.lit) return true;
@@ -161,9 +237,11 @@ bool any_lit(const raster::Scene& scene) {
 
 }  // namespace
 
-Bytes serialize_model(const raster::Scene& scene, bool textured) {
+Bytes serialize_model(const raster::Scene& scene, bool wants_texture) {
+  const bool textured = wants_texture || has_masks(scene);
   const bool texcoords = textured && !scene.textures.empty();
-  const auto fields = static_cast<uint8_t>((any_lit(scene) ? kNormals : 0) | (texcoords ? kTexcoords : 0));
+  const auto fields = static_cast<uint8_t>((any_lit(scene) ? kNormals : 0) | (texcoords ? kTexcoords : 0) |
+                                           (has_looks(scene) ? kLooks : 0));
   ByteWriter writer;
   writer.u8(fields);
   for (const size_t count : {scene.mesh.vertices.size(), scene.mesh.faces.size(), scene.materials.size(),
@@ -175,6 +253,7 @@ Bytes serialize_model(const raster::Scene& scene, bool textured) {
   for (const raster::Material& material : scene.materials) write_material(writer, material);
   for (const raster::Texture& texture : scene.textures) write_texture(writer, texture, textured);
   for (const raster::Light& light : scene.lights) write_light(writer, light);
+  if ((fields & kLooks) != 0) write_looks(writer, scene);
   return writer.take();
 }
 
@@ -182,7 +261,7 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
   if (bytes.size() > limits.max_bytes) return Failure{Error::limit_exceeded, 0, "model has more bytes than the limit"};
   ByteReader reader(bytes);
   const uint8_t fields = reader.u8();
-  if ((fields & ~(kNormals | kTexcoords)) != 0) return Failure{Error::unsupported, 0, "unknown vertex fields"};
+  if ((fields & ~(kNormals | kTexcoords | kLooks)) != 0) return Failure{Error::unsupported, 0, "unknown vertex fields"};
   const uint64_t n_vertices = reader.u32(), n_faces = reader.u32(), n_materials = reader.u32();
   const uint32_t n_textures = reader.u32(), n_lights = reader.u32();
   // Before anything is allocated: the counts must fit the bytes that are there.
@@ -210,6 +289,7 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
     PAC_TRY(raster::Light light, read_light(reader));
     scene.lights.push_back(light);
   }
+  if ((fields & kLooks) != 0) PAC_CHECK(read_looks(reader, n_textures, scene));
   if (reader.overrun()) return Failure{Error::truncated, bytes.size(), "model ends early"};
   if (reader.remaining() != 0) return Failure{Error::corrupt, reader.position(), "bytes after the end of the model"};
   PAC_CHECK(validate(scene.mesh, static_cast<uint32_t>(n_materials), limits));

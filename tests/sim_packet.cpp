@@ -246,6 +246,38 @@ TEST_CASE("a resident model comes back without loss, and every strict prefix of 
   }
 }
 
+TEST_CASE("masks, panes, maps, fog and environment travel with a resident model; others take no more bytes") {
+  raster::Scene scene = test::small_scene(true).fine;
+  const size_t plain = sim::serialize_model(scene, true).size();
+  scene.materials[0].reflection = {0.1f, 0.2f, 0.3f};
+  scene.materials[0].opacity = 0.5f;
+  CHECK(sim::serialize_model(scene, true).size() == plain);
+  scene.materials[0].alpha = raster::AlphaMode::mask;
+  scene.materials[0].normal_texture = 0;
+  scene.materials[0].anisotropy = 8;
+  scene.environment = 0;
+  scene.fog.kind = raster::Fog::Kind::exponential;
+  scene.fog.density = 0.25f;
+  for (const bool textured : {false, true}) {
+    const Bytes bytes = sim::serialize_model(scene, textured);
+    const auto back = sim::parse_model(bytes);
+    REQUIRE(back.ok());
+    CHECK(sim::serialize_model(*back, textured) == bytes);
+    CHECK(back->textures[0].texels == scene.textures[0].texels);  // what is masked needs its texture
+    CHECK(back->materials[0].alpha == raster::AlphaMode::mask);
+    CHECK(back->materials[0].reflection == scene.materials[0].reflection);
+    CHECK(back->materials[0].normal_texture == 0);
+    CHECK(back->materials[0].anisotropy == 8);
+    CHECK(back->environment == 0);
+    CHECK(back->fog.density == 0.25f);
+    for (size_t size = bytes.size() - 60; size < bytes.size(); ++size)
+      REQUIRE(!sim::parse_model(std::span(bytes).first(size)).ok());
+    Bytes hostile = bytes;  // the first material's alpha mode
+    hostile[bytes.size() - 42 * scene.materials.size() + 1] = 4;
+    CHECK(!sim::parse_model(hostile).ok());
+  }
+}
+
 TEST_CASE("a model's counts are checked before anything is allocated") {
   Bytes bytes = sim::serialize_model(test::small_scene(false).fine, false);
   for (const size_t field : {1u, 5u, 9u, 13u, 17u}) {

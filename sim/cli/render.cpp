@@ -16,6 +16,7 @@ using raster::RenderQuality;
 using raster::Shading;
 
 enum class Level : uint8_t { high, low };
+enum class LightingChoice : uint8_t { full, maps, local };
 
 struct Request {
   std::string scene, out, depth_out, id_out;
@@ -23,9 +24,10 @@ struct Request {
   Level quality = Level::high;
   bool texture = true;
   Shading shading = Shading::gouraud;
-  sim::Lighting lighting = sim::Lighting::full;
+  LightingChoice lighting = LightingChoice::full;
   int samples = 16, shading_samples = 0;
   sim::Model tessellation = sim::Model::fine;
+  int anisotropy = 1;
 };
 
 struct Drawn {
@@ -50,16 +52,19 @@ void declare(Options& options, Request& request) {
   options.choice<Shading>("--shading", request.shading,
                           {{"flat", Shading::flat}, {"gouraud", Shading::gouraud}, {"phong", Shading::phong}},
                           "where lights are lit: polygon, vertex or sample");
-  options.choice<sim::Lighting>("--lighting", request.lighting,
-                                {{"full", sim::Lighting::full}, {"local", sim::Lighting::local}},
-                                "full: shadows, ambient occlusion or the baked solution; local: without "
-                                "(the baked solution)");
+  options.choice<LightingChoice>(
+      "--lighting", request.lighting,
+      {{"full", LightingChoice::full}, {"maps", LightingChoice::maps}, {"local", LightingChoice::local}},
+      "full: shadows, ambient occlusion or the baked solution; maps: shadows by depth maps; local: without "
+      "(the baked solution)");
   options.choice<int>("--samples", request.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "a pixel (16; quality low: the split's)");
   options.choice<int>("--shading-samples", request.shading_samples, {{"0", 0}, {"1", 1}, {"4", 4}},
                       "places where a pixel of several samples is shaded; 0: at each sample (0)");
   options.choice<sim::Model>("--tessellation", request.tessellation,
                              {{"fine", sim::Model::fine}, {"coarse", sim::Model::coarse}}, "which of two models");
+  options.integer("--anisotropy", "N", request.anisotropy, 1, 8,
+                  "most texture probes along a pixel's longer side (the file's, or 1)");
   options.text("--depth", "OUT.pfm", request.depth_out, "window depth, 0 near to 1 far and background");
   options.text("--id", "OUT.png", request.id_out, "polygons as colors; background black");
 }
@@ -78,8 +83,10 @@ Result<sim::Split> quality_of(const Options& options, const Request& request, co
   quality.shading_samples = request.shading_samples;
   if (options.given("--tessellation")) split.low_model = request.tessellation;
   if (options.given("--lighting")) {
-    const bool full = request.lighting == sim::Lighting::full;
-    quality.lighting = full ? raster::Lighting::full : raster::Lighting::local;
+    const bool full = request.lighting != LightingChoice::local;
+    quality.lighting = request.lighting == LightingChoice::maps ? raster::Lighting::shadow_maps
+                       : full                                   ? raster::Lighting::full
+                                                                : raster::Lighting::local;
     if (full && !options.given("--shading") && sim::has_lit_materials(set)) quality.shading = Shading::phong;
     split.low_lighting = full || set.local_colors.empty() ? sim::Lighting::full : sim::Lighting::local;
   }
@@ -102,7 +109,9 @@ Result<Drawn> draw(const Options& options, const Request& request, const SceneSo
   renderer_options.threads = options.threads;
   renderer_options.isa = options.isa;
   PAC_TRY(raster::Renderer renderer, raster::Renderer::create(request.width, request.height, renderer_options));
-  const raster::Scene scene = sim::low_scene(source.set, split);
+  raster::Scene scene = sim::low_scene(source.set, split);
+  if (options.given("--anisotropy"))
+    for (raster::Material& material : scene.materials) material.anisotropy = request.anisotropy;
   drawn.polygons = scene.mesh.faces.size();
   const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
   const raster::Camera camera = source.camera(request.frame, aspect);
