@@ -100,7 +100,7 @@ PAC_INLINE Wide widen_by_13(Lanes v) {
           _mm256_srai_epi32(_mm256_unpackhi_epi16(zeros(), v), 3)};
 }
 
-#include "base/kernels/motion_transforms.inc"
+#include "base/kernels/motion_transforms_simd.inc"
 
 __m256i join(__m128i first, __m128i second) {
   return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);

@@ -211,7 +211,7 @@ PAC_INLINE Block transpose(const Block& b) {
            high_halves(column2, lower2), high_halves(column3, lower3)}};
 }
 
-#include "base/kernels/motion_transforms.inc"
+#include "base/kernels/motion_transforms_simd.inc"
 
 PAC_INLINE Lanes difference_row(const uint8_t* source, const uint8_t* prediction) {
   return vreinterpretq_s16_u16(vsubl_u8(vld1_u8(source), vld1_u8(prediction)));

@@ -97,7 +97,7 @@ PAC_INLINE Wide widen_by_13(Lanes v) {
   return {_mm_srai_epi32(_mm_unpacklo_epi16(zeros(), v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zeros(), v), 3)};
 }
 
-#include "base/kernels/motion_transforms.inc"
+#include "base/kernels/motion_transforms_simd.inc"
 
 __m128i difference_row(const uint8_t* source, const uint8_t* prediction) {
   return _mm_sub_epi16(widen(load_8(source)), widen(load_8(prediction)));

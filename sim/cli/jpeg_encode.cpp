@@ -39,9 +39,9 @@ void declare(Options& options, Request& request) {
                               "of chroma (420)");
   options.choice<Tune>("--tune", request.tune, {{"psnr", Tune::psnr}, {"ssim", Tune::ssim}, {"visual", Tune::visual}},
                        "what the tables are made for (visual)");
-  options.choice<Effort>("--effort", request.effort,
-                         {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
-                         "fast: standard Huffman; default: optimal Huffman, dead zone; best: tables for the picture, trellis");
+  options.choice<Effort>(
+      "--effort", request.effort, {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
+      "fast: standard Huffman; default: optimal Huffman, dead zone; best: tables for the picture, trellis");
   options.choice<Huffman>("--huffman", request.huffman,
                           {{"standard", Huffman::standard}, {"optimal", Huffman::optimal}},
                           "Annex K.3's tables, or made for the picture; overrides --effort");
