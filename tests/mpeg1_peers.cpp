@@ -24,27 +24,9 @@ void write_y4m(const std::string& path, const std::vector<Frame420>& frames) {
   write_bytes(path, bytes);
 }
 
-std::vector<Frame420> read_y4m(const std::string& path) {
-  const std::vector<uint8_t> bytes = read_bytes(path);
-  auto reader = Y4mReader::open(bytes);
-  REQUIRE(reader.ok());
-  std::vector<Frame420> frames;
-  for (Frame420 frame;; frame = Frame420()) {
-    const auto more = reader->next(frame);
-    REQUIRE(more.ok());
-    if (!*more) return frames;
-    frames.push_back(std::move(frame));
-  }
-}
-
 void require_alike(const std::vector<Frame420>& ours, const std::vector<Frame420>& theirs) {
   REQUIRE(ours.size() == theirs.size());
   for (size_t i = 0; i < ours.size(); ++i) REQUIRE(psnr(mpeg1::view_of(ours[i]), mpeg1::view_of(theirs[i])) > 50);
-}
-
-std::vector<Frame420> ffmpeg_decodes(const TempDir& dir, const std::string& stream) {
-  REQUIRE(run("ffmpeg -v error -xerror -y -i " + stream + " -vsync passthrough " + dir.file("theirs.y4m")) == 0);
-  return read_y4m(dir.file("theirs.y4m"));
 }
 
 TEST_CASE("ffmpeg decodes our elementary and system streams as we do") {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,11 +16,8 @@
 #include "base/image_io.h"
 #include "base/metrics.h"
 #include "base/ssimulacra2.h"
+#include "bench/peers/libjpeg_turbo.h"
 #include "jpeg/jpeg.h"
-
-// clang-format off: jpeglib.h needs size_t and FILE from above
-#include <jpeglib.h>
-// clang-format on
 
 namespace {
 
@@ -61,30 +57,9 @@ double percent(const Curve& reference, const Curve& test, size_t m) {
 }
 
 Bytes libjpeg_turbo_file(const RgbImage& image, int quality) {
-  jpeg_compress_struct c;
-  jpeg_error_mgr errors;
-  c.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&c);
-  unsigned char* buffer = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&c, &buffer, &size);
-  c.image_width = static_cast<JDIMENSION>(image.width());
-  c.image_height = static_cast<JDIMENSION>(image.height());
-  c.input_components = 3;
-  c.in_color_space = JCS_RGB;
-  jpeg_set_defaults(&c);
-  jpeg_set_quality(&c, quality, TRUE);
-  c.optimize_coding = TRUE;
-  jpeg_start_compress(&c, TRUE);
-  while (c.next_scanline < c.image_height) {
-    JSAMPROW row = const_cast<uint8_t*>(image.row(static_cast<int>(c.next_scanline)));
-    jpeg_write_scanlines(&c, &row, 1);
-  }
-  jpeg_finish_compress(&c);
-  jpeg_destroy_compress(&c);
-  const Bytes bytes(buffer, buffer + size);
-  std::free(buffer);
-  return bytes;
+  bench::LibjpegTurbo peer;
+  peer.encode(image, quality, true);
+  return Bytes(peer.file().begin(), peer.file().end());
 }
 
 struct Setting {

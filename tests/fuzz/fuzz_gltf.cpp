@@ -3,18 +3,11 @@
 #include "base/mesh.h"
 #include "raster/load_gltf.h"
 #include "raster/node_animation.h"
+#include "tests/support/model_files.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::span<const uint8_t> bytes(data, size);
-  pac::raster::AssetSource assets;
-  assets.read = [&](const std::string& name) -> pac::Result<pac::Bytes> {
-    if (name.size() % 2 == 1) return pac::Failure{pac::Error::io, 0, "no such file"};
-    return pac::Bytes(data, data + size);
-  };
-  assets.decode_image = [](std::span<const uint8_t> image) -> pac::Result<pac::RgbaImage> {
-    if (image.size() % 3 == 0) return pac::Failure{pac::Error::corrupt, 0, "not an image"};
-    return pac::RgbaImage(3, 5);
-  };
+  const pac::raster::AssetSource assets = pac::test::assets_of_bytes(bytes);
   pac::Limits limits;
   limits.max_triangles = 1 << 16;
   limits.max_bytes = 1 << 22;

@@ -32,4 +32,19 @@ inline raster::AssetSource assets_from(std::map<std::string, std::string> files)
   return assets;
 }
 
+// For fuzzing: every file whose name has an even length holds `bytes`; two images of three are 3x5 pixels, the others
+// broken. `bytes` must outlive the source.
+inline raster::AssetSource assets_of_bytes(std::span<const uint8_t> bytes) {
+  raster::AssetSource assets;
+  assets.read = [bytes](const std::string& name) -> Result<Bytes> {
+    if (name.size() % 2 == 1) return Failure{Error::io, 0, "no such file"};
+    return Bytes(bytes.begin(), bytes.end());
+  };
+  assets.decode_image = [](std::span<const uint8_t> image) -> Result<RgbaImage> {
+    if (image.size() % 3 == 0) return Failure{Error::corrupt, 0, "not an image"};
+    return RgbaImage(3, 5);
+  };
+  return assets;
+}
+
 }  // namespace pac::test

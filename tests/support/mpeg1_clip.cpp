@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/metrics.h"
+#include "base/y4m.h"
 
 namespace pac::test {
 namespace {
@@ -90,6 +92,24 @@ std::vector<Frame420> decode_all(std::span<const uint8_t> bytes, const mpeg1::De
   }
   if (report != nullptr) *report = decoder.report();
   return frames;
+}
+
+std::vector<Frame420> read_y4m(const std::string& path) {
+  const std::vector<uint8_t> bytes = read_bytes(path);
+  auto reader = Y4mReader::open(bytes);
+  REQUIRE(reader.ok());
+  std::vector<Frame420> frames;
+  for (Frame420 frame;; frame = Frame420()) {
+    const auto more = reader->next(frame);
+    REQUIRE(more.ok());
+    if (!*more) return frames;
+    frames.push_back(std::move(frame));
+  }
+}
+
+std::vector<Frame420> ffmpeg_decodes(const TempDir& dir, const std::string& stream) {
+  REQUIRE(run("ffmpeg -v error -xerror -y -i " + stream + " -vsync passthrough " + dir.file("theirs.y4m")) == 0);
+  return read_y4m(dir.file("theirs.y4m"));
 }
 
 bool equal(const mpeg1::FrameView& a, const mpeg1::FrameView& b) {

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/image.h"
 #include "mpeg1/mpeg1.h"
+#include "tests/support/peer.h"
 
 namespace pac::test {
 
@@ -21,6 +23,11 @@ std::vector<uint8_t> encode_clip(const std::vector<Frame420>& frames, const mpeg
 // Every picture of a stream, in display order; `report` may be null. Fails the test where decoding fails.
 std::vector<Frame420> decode_all(std::span<const uint8_t> bytes, const mpeg1::DecoderOptions& options = {},
                                  mpeg1::ErrorReport* report = nullptr, Isa isa = best_isa());
+
+// Every frame of a Y4M file. Fails the test where it is none.
+std::vector<Frame420> read_y4m(const std::string& path);
+// Every picture of the stream at that path as ffmpeg decodes it; the frames go by a file in `dir`.
+std::vector<Frame420> ffmpeg_decodes(const TempDir& dir, const std::string& stream);
 
 bool equal(const mpeg1::FrameView& a, const mpeg1::FrameView& b);
 // Over all samples of the three planes.
