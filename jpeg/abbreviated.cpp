@@ -7,25 +7,6 @@
 #include "jpeg/stream_tables.h"
 
 namespace pac::jpeg {
-namespace {
-
-// Whether a baseline file of 8-bit samples can hold the symbol [T.81 tables F.1, F.2].
-bool can_occur(bool is_dc, uint32_t symbol) {
-  const uint32_t run = symbol >> 4, size = symbol & 15;
-  if (is_dc) return symbol <= 11;
-  return size == 0 ? run == 0 || run == 15 : size <= 10;
-}
-
-// A symbol that was not seen counts as a 64th of one that was seen once.
-HuffmanSpec complete_table(bool is_dc, const uint64_t (&seen)[256]) {
-  constexpr uint64_t kWeight = 64;
-  uint64_t counts[256];
-  for (uint32_t symbol = 0; symbol < 256; ++symbol)
-    counts[symbol] = can_occur(is_dc, symbol) ? kWeight * seen[symbol] + 1 : 0;
-  return optimal_huffman(counts);
-}
-
-}  // namespace
 
 Result<StreamTables> StreamTables::standard(const QuantTables& steps) {
   for (const QuantTable* table : {&steps.luma, &steps.chroma})
@@ -50,7 +31,7 @@ Result<StreamTables> StreamTables::for_pictures(std::span<const ConstRgbView> pi
   }
   State state{*own.tables, {}};
   for (uint32_t table = 0; table < kTableCount; ++table)
-    state.huffman.spec[table] = complete_table(table == kDc0 || table == kDc1, seen[table]);
+    state.huffman.spec[table] = complete_huffman(table == kDc0 || table == kDc1, seen[table]);
   return StreamTables(std::make_shared<const State>(state));
 }
 

@@ -210,7 +210,7 @@ Result<std::vector<uint8_t>> write_coefficients(const CoefficientImage& image, c
     ends[scan] = tokens.size();
   }
   const ScanTables tables =
-      options.huffman == Huffman::optimal ? optimal_tables(tokens.histogram()) : standard_tables();
+      options.huffman == Huffman::optimal ? optimal_tables(tokens.histogram()) : fixed_tables(options.huffman);
   std::vector<uint8_t> bytes;
   ByteSink sink(bytes);
   write_start_of_image(sink);

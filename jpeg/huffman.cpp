@@ -20,6 +20,13 @@ HuffmanDecoder::Entry lookup_entry(uint32_t index, int code_length, uint8_t symb
   return entry;
 }
 
+// Whether a baseline file of 8-bit samples can hold the symbol [T.81 tables F.1, F.2].
+bool can_occur(bool is_dc, uint32_t symbol) {
+  const uint32_t run = symbol >> 4, size = symbol & 15;
+  if (is_dc) return symbol <= 11;
+  return size == 0 ? run == 0 || run == 15 : size <= 10;
+}
+
 }  // namespace
 
 bool is_valid(const HuffmanSpec& spec) {
@@ -69,6 +76,14 @@ HuffmanSpec optimal_huffman(std::span<const uint64_t, 256> frequency) {
         spec.symbols[k++] = static_cast<uint8_t>(s);
       }
   return spec;
+}
+
+HuffmanSpec complete_huffman(bool is_dc, std::span<const uint64_t, 256> frequency) {
+  constexpr uint64_t kWeight = 64;
+  uint64_t counts[256];
+  for (uint32_t symbol = 0; symbol < 256; ++symbol)
+    counts[symbol] = can_occur(is_dc, symbol) ? kWeight * frequency[symbol] + 1 : 0;
+  return optimal_huffman(counts);
 }
 
 void make_decoder(const HuffmanSpec& spec, HuffmanDecoder& decoder) {

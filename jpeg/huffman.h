@@ -36,6 +36,10 @@ void make_codes(const HuffmanSpec& spec, HuffmanCodes& codes);
 // procedure of T.81 K.2 is a heuristic. Symbols that do not occur get no code.
 HuffmanSpec optimal_huffman(std::span<const uint64_t, 256> frequency);
 
+// The same, but every symbol that a baseline file of 8-bit samples can hold [T.81 tables F.1, F.2] has a code: one that
+// was not seen counts as a 64th of one that was seen once. Frequencies below 2^57.
+HuffmanSpec complete_huffman(bool is_dc, std::span<const uint64_t, 256> frequency);
+
 // For the decoder. The next kLookupBits bits index `lookup`; codes longer than that take the canonical search.
 struct HuffmanDecoder {
   static constexpr int kLookupBits = 10;

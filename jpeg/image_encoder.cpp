@@ -103,7 +103,7 @@ void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options,
   bias_ = 0;
   const Kernels* table = kernels_for(options.isa);
   kernels_ = table != nullptr ? table : &kernels();
-  masking_ = is_tuned() ? options.tune : Tune::psnr;
+  masking_ = options.masking ? *options.masking : is_tuned() ? options.tune : Tune::psnr;
   if (image.pulled != nullptr || image.pixels.data != nullptr) options_.threads = 1;
   const Frame frame = make_frame(image, options);
   const Component &luma = frame.components[0], &chroma = frame.components[frame.n_components - 1];
@@ -161,7 +161,7 @@ int ImageEncoder::sample_period(int64_t max_blocks) const {
 }
 
 ScanTables ImageEncoder::known_tables() const {
-  return options_.stream != nullptr ? options_.stream->state().huffman : standard_tables();
+  return options_.stream != nullptr ? options_.stream->state().huffman : fixed_tables(options_.huffman);
 }
 
 QuantTables ImageEncoder::tables_at(double quality, bool scale_tables) const {
@@ -183,8 +183,7 @@ void ImageEncoder::set_tables(const QuantTables& tables, double dead_zone) {
   quantizers_[0] = make_quantizer(tables.luma, dead_zone, kNoGain.gain);
   quantizers_[1] = make_quantizer(tables.chroma, dead_zone, chroma_gain_.gain);
   if (!options_.trellis) return;
-  const double full_rate = is_tuned() ? exchange_rates(options_.tune).trellis : ExchangeRates().trellis;
-  const double rate = full_rate * (1.0 - 0.9 * bias_);
+  const double rate = exchange_rates(masking_).trellis * (1.0 - 0.9 * bias_);
   weights_[0] = trellis_weights(tables.luma, reference_.luma, kNoGain.gain, rate);
   weights_[1] = trellis_weights(tables.chroma, reference_.chroma, chroma_gain_.gain, rate);
 }
@@ -263,7 +262,7 @@ void ImageEncoder::measure_visibility(int period) {
   mean_visibility_ = static_cast<float>(sum / static_cast<double>(n_blocks));
 }
 
-// What symbols cost: the standard tables' lengths, or those of tables made for the sample as quantized so far.
+// What symbols cost: the lengths of fixed tables, or those of tables made for the sample as quantized so far.
 void ImageEncoder::measure_costs(int period) {
   ScanTables tables = known_tables();
   const bool is_optimal = options_.huffman == Huffman::optimal && options_.stream == nullptr;
@@ -332,7 +331,7 @@ Histogram ImageEncoder::count_symbols(QuantTables tables, double quality) {
 QuantTables ImageEncoder::write_file(QuantTables tables, double quality, ByteSink& sink) {
   prepare(tables, quality);
   // With known tables levels become bits at once; else all tokens wait for the tables made of them.
-  const bool direct = options_.huffman == Huffman::standard || options_.stream != nullptr;
+  const bool direct = options_.huffman != Huffman::optimal || options_.stream != nullptr;
   const ScanTables scan_tables = direct ? known_tables() : optimal_tables(histogram(1));
   write_headers(bands_[0].source.frame(), tables, scan_tables, options_, sink);
   write_entropy_coded(scan_tables, direct, sink);

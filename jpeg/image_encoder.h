@@ -96,7 +96,7 @@ class ImageEncoder {
   AcCosts costs_[2];
   ReferenceSteps reference_;            // of the trellis
   ChromaGain chroma_gain_;              // 1 where tables are not tuned
-  Tune masking_ = Tune::psnr;           // options_.tune where tables are tuned
+  Tune masking_ = Tune::psnr;           // options_.masking, or options_.tune where tables are tuned
   std::vector<float> seen_visibility_;  // empty: a block's own
   float mean_visibility_ = 1;           // of the luma blocks
   bool use_trellis_ = false;            // costs_ are known

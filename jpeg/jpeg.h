@@ -20,7 +20,9 @@ namespace pac::jpeg {
 
 // Samples of Y a sample of Cb and Cr: the paper's "4:1:1" (4 Y to 1 Cr and 1 Cb) is today's 4:2:0.
 enum class Subsampling : uint8_t { yuv444, yuv422, yuv420, gray };
-enum class Huffman : uint8_t { standard, optimal };  // Annex K.3 tables, or made for the image
+// Huffman tables: Annex K.3's; made for the image, which takes a second look at it; fixed ones that suit the difference
+// images of rendered scenes (many blocks of nothing but EOB), for one pass over those.
+enum class Huffman : uint8_t { standard, optimal, difference };
 enum class Effort : uint8_t { fast, normal, best };
 enum class Tune : uint8_t { psnr, ssim, visual };
 
@@ -81,6 +83,9 @@ struct EncodeOptions {
   // For a difference image, whose errors will be seen in the composite: the picture that shall be seen, H. For ssim and
   // visual with the trellis, errors then hide where H is busy, not where the difference is. Same size, or empty.
   ConstRgbView seen{};
+  // Which errors hide, for the trellis: psnr: none; ssim, visual: those in busy luma blocks, as those tunings have it.
+  // Empty: as `tune` says where tables are tuned, else psnr.
+  std::optional<Tune> masking = {};
   Isa isa = best_isa();                  // results never depend on it
   const Metadata* metadata = nullptr;    // written behind the JFIF segment, whose density it tells
   const StreamTables* stream = nullptr;  // tables that the decoder has already: `tables`, `table_source` and `huffman`

@@ -214,6 +214,14 @@ ScanTables standard_tables() {
   return {{standard_dc(0), standard_ac(0), standard_dc(1), standard_ac(1)}};
 }
 
+ScanTables difference_tables() {
+  return {{difference_dc(0), difference_ac(0), difference_dc(1), difference_ac(1)}};
+}
+
+ScanTables fixed_tables(Huffman huffman) {
+  return huffman == Huffman::difference ? difference_tables() : standard_tables();
+}
+
 ScanTables optimal_tables(const Histogram& histogram) {
   ScanTables tables;
   for (int i = 0; i < kTableCount; ++i) {

@@ -10,6 +10,7 @@
 #include "jpeg/block_walker.h"
 #include "jpeg/byte_sink.h"
 #include "jpeg/huffman.h"
+#include "jpeg/jpeg.h"
 
 namespace pac::jpeg {
 
@@ -52,6 +53,9 @@ struct ScanTables {
   HuffmanSpec spec[kTableCount];
 };
 ScanTables standard_tables();
+ScanTables difference_tables();
+// Those that need no look at the image: difference_tables() where asked for, else the standard ones.
+ScanTables fixed_tables(Huffman huffman);
 ScanTables optimal_tables(const Histogram& histogram);
 
 // Writes blocks or tokens as bits with the 0xFF bytes stuffed [T.81 B.1.1.5]. Reusable: keeps what it derived from the

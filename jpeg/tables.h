@@ -15,6 +15,10 @@ extern const uint8_t kAnnexKChroma[64];  // [T.81 table K.2]
 const HuffmanSpec& standard_dc(int table);
 const HuffmanSpec& standard_ac(int table);
 
+// For difference images [jpeg/difference_tables.cpp]: every symbol of a baseline file has a code. table: as above.
+const HuffmanSpec& difference_dc(int table);
+const HuffmanSpec& difference_ac(int table);
+
 // Real-valued steps, natural order: how large an error of each coefficient counts as one unit, which is what a tuning
 // means by even quality. Rate-distortion choices minimize bits + kBitsPerSquaredStep * sum((error / reference)^2).
 struct ReferenceSteps {

@@ -22,6 +22,24 @@ uint32_t kraft_sum(const HuffmanSpec& spec) {
   return sum;
 }
 
+// Also the promise that any difference image can be coded with them, whatever its quality.
+TEST_CASE("the Huffman tables for difference images are valid and have a code for each symbol of a baseline file") {
+  for (int table = 0; table < 2; ++table) {
+    for (const bool is_dc : {true, false}) {
+      const HuffmanSpec& spec = is_dc ? jpeg::difference_dc(table) : jpeg::difference_ac(table);
+      const HuffmanSpec& standard = is_dc ? jpeg::standard_dc(table) : jpeg::standard_ac(table);
+      CHECK(jpeg::is_valid(spec));
+      CHECK(kraft_sum(spec) < 65536);
+      CHECK(spec.n_symbols() == standard.n_symbols());
+      jpeg::HuffmanCodes codes, known;
+      jpeg::make_codes(spec, codes);
+      jpeg::make_codes(standard, known);
+      for (size_t symbol = 0; symbol < 256; ++symbol)
+        CHECK((codes.code_and_length[symbol] != 0) == (known.code_and_length[symbol] != 0));
+    }
+  }
+}
+
 TEST_CASE("the standard Huffman tables are valid, complete but for the all-ones code, and name each symbol once") {
   for (int table = 0; table < 2; ++table) {
     for (const HuffmanSpec* spec : {&jpeg::standard_dc(table), &jpeg::standard_ac(table)}) {

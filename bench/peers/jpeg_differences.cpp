@@ -68,7 +68,7 @@ double percent(const Curve& reference, const Curve& test, size_t m) {
 }
 
 void report(const Scene& scene, const std::string& setting, const Curve& reference, const Curve& curve) {
-  std::printf("%-16s %-26s", scene.name.c_str(), setting.c_str());
+  std::printf("%-16s %-27s", scene.name.c_str(), setting.c_str());
   for (size_t m = 0; m < kMetrics; ++m) std::printf("  %s %+6.1f", kMetricNames[m], percent(reference, curve, m));
   std::printf("   bytes at q75 %6.0f\n", curve[4].bytes);
   std::fflush(stdout);
@@ -80,6 +80,8 @@ void compare(const Scene& scene, const std::string& stem) {
   report(scene, "Annex K, optimal Huffman", reference, reference);
   annex_k.huffman = jpeg::Huffman::standard;
   report(scene, "Annex K, standard Huffman", reference, code(scene, annex_k));
+  annex_k.huffman = jpeg::Huffman::difference;
+  report(scene, "Annex K, difference Huffman", reference, code(scene, annex_k));
   for (const char* peer : {"moz-default", "moz-flat", "moz-ms-ssim"}) {
     Curve curve;
     for (const int quality : kQualities)

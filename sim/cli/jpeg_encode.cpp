@@ -42,9 +42,11 @@ void declare(Options& options, Request& request) {
   options.choice<Effort>(
       "--effort", request.effort, {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
       "fast: standard Huffman; default: optimal Huffman, dead zone; best: tables for the picture, trellis");
-  options.choice<Huffman>("--huffman", request.huffman,
-                          {{"standard", Huffman::standard}, {"optimal", Huffman::optimal}},
-                          "Annex K.3's tables, or made for the picture; overrides --effort");
+  options.choice<Huffman>(
+      "--huffman", request.huffman,
+      {{"standard", Huffman::standard}, {"optimal", Huffman::optimal}, {"difference", Huffman::difference}},
+      "Annex K.3's tables, made for the picture, or fixed ones for difference images; overrides "
+      "--effort");
   options.text("--tables", "annex-k|adapted|FILE", request.tables,
                "instead of --effort's; FILE: 64 or 128 numbers, luma first, row order, which -q scales where given");
   options.integer("--restart", "MCUS", request.restart, 0, 65535, "restart interval (0 = none)");

@@ -37,8 +37,11 @@ int run_jpeg_transcode(Args args) {
   options.text("-o|--output", "OUT.jpg", out, "the file, of exactly the same picture; - is stdout", true);
   options.real("-q|--quality", "Q", quality, 0.01, 100, "requantize to Annex K's tables at that quality: not lossless");
   options.choice<jpeg::Huffman>("--huffman", write.huffman,
-                                {{"standard", jpeg::Huffman::standard}, {"optimal", jpeg::Huffman::optimal}},
-                                "Annex K.3's tables, or made for the picture (optimal)");
+                                {{"standard", jpeg::Huffman::standard},
+                                 {"optimal", jpeg::Huffman::optimal},
+                                 {"difference", jpeg::Huffman::difference}},
+                                "Annex K.3's tables, made for the picture, or fixed ones for difference images "
+                                "(optimal)");
   options.integer("--restart", "MCUS", write.restart_interval_mcus, 0, 65535, "restart interval (0 = none)");
   options.flag("--drop-metadata", drop_metadata, "leave out profile, Exif, XMP, comments and density");
   options.flag("--lenient", lenient, "make a sound file of what a damaged one holds; the exit code is 1 still");
