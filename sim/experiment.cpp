@@ -110,8 +110,8 @@ Result<RenderOptions> with_defaults(RenderOptions options, const SceneSet& scene
 Result<uint64_t> optimal_huffman_size(const Renderings& renderings, ArmKind kind, double quality,
                                       CodingOptions options) {
   options.huffman = jpeg::Huffman::optimal;
-  PAC_TRY(const CodedImage coded,
-          code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality, options));
+  PAC_TRY(const CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality,
+                                                  options, renderings.high.view()));
   return uint64_t{coded.bytes.size()};
 }
 
@@ -155,19 +155,19 @@ Result<Renderings> render_split(const SceneSet& scene, const raster::Camera& cam
 Result<Arm> code_arm_at_quality(const Renderings& renderings, ArmKind kind, double quality,
                                 const CodingOptions& options, Timings* timings) {
   const Stopwatch watch;
-  PAC_TRY(CodedImage coded,
-          code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality, options));
+  PAC_TRY(CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality, options,
+                                            renderings.high.view()));
   if (timings != nullptr) encode_time(*timings, kind) = watch.milliseconds();
   return finish_arm(renderings, kind, std::move(coded), options, timings);
 }
 
 Result<Arm> code_arm_at_size(const Renderings& renderings, ArmKind kind, uint64_t target_bytes,
                              const CodingOptions& options, Timings* timings) {
-  const ConstRgbView picture = coded_picture(renderings, kind).view();
-  PAC_TRY(CodedImage coded, code_at_size(picture, content_of(kind), target_bytes, options));
+  const ConstRgbView picture = coded_picture(renderings, kind).view(), seen = renderings.high.view();
+  PAC_TRY(CodedImage coded, code_at_size(picture, content_of(kind), target_bytes, options, seen));
   if (timings != nullptr) {  // of one encode, not of the search
     const Stopwatch watch;
-    PAC_CHECK(code_at_quality(picture, content_of(kind), coded.quality, options));
+    PAC_CHECK(code_at_quality(picture, content_of(kind), coded.quality, options, seen));
     encode_time(*timings, kind) = watch.milliseconds();
   }
   return finish_arm(renderings, kind, std::move(coded), options, timings);

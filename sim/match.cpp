@@ -13,11 +13,26 @@ namespace pac::sim {
 
 namespace {
 
-jpeg::EncodeOptions encode_options(const jpeg::QuantTables& tables, const CodingOptions& options) {
+// A picture, what it holds, and how the viewer will see it.
+struct Source {
+  ConstRgbView image;
+  Content content;
+  ConstRgbView seen;  // empty: `image`
+};
+
+jpeg::EncodeOptions encode_options(const Source& source, const jpeg::QuantTables& tables,
+                                   const CodingOptions& options) {
+  const bool is_difference = source.content == Content::difference;
   jpeg::EncodeOptions encode;
   encode.tables = tables;
   encode.subsampling = options.subsampling;
   encode.huffman = options.huffman;
+  if (options.huffman == jpeg::Huffman::difference && !is_difference) encode.huffman = jpeg::Huffman::standard;
+  if (options.tables == TableFamily::adapted && options.masking != jpeg::Tune::psnr) {
+    encode.trellis = true;
+    encode.masking = options.masking;
+    if (is_difference) encode.seen = source.seen;
+  }
   encode.isa = options.isa;
   return encode;
 }
@@ -36,8 +51,8 @@ double shortest_quality(double quality, const ScaledTables& family) {
 // Sizes of one image's files over the steps of its table family, each coded at most once. Index 0 is the finest step.
 class SizeSearch {
  public:
-  SizeSearch(ConstRgbView image, const ScaledTables& family, uint64_t target, const CodingOptions& options)
-      : image_(image),
+  SizeSearch(const Source& source, const ScaledTables& family, uint64_t target, const CodingOptions& options)
+      : source_(source),
         family_(family),
         target_(target),
         options_(options),
@@ -84,7 +99,7 @@ class SizeSearch {
     std::vector<std::optional<Failure>> failures(steps.size());
     pool_.for_each(static_cast<int64_t>(steps.size()), [&](int64_t i) {
       const size_t step = steps[static_cast<size_t>(i)];
-      auto file = jpeg::encode(image_, encode_options(family_.at_quality(qualities_[step]), options_));
+      auto file = jpeg::encode(source_.image, encode_options(source_, family_.at_quality(qualities_[step]), options_));
       if (file.ok())
         sizes_[step] = file->size();
       else
@@ -115,7 +130,7 @@ class SizeSearch {
     return *best;
   }
 
-  ConstRgbView image_;
+  const Source& source_;
   const ScaledTables& family_;
   uint64_t target_;
   const CodingOptions& options_;
@@ -125,13 +140,13 @@ class SizeSearch {
   int encodes_ = 0;
 };
 
-Result<CodedImage> code(ConstRgbView image, Content content, double quality, const ScaledTables& family,
+Result<CodedImage> code(const Source& source, double quality, const ScaledTables& family,
                         const CodingOptions& options) {
   CodedImage coded;
   coded.quality = quality;
-  coded.equivalent_quality = equivalent_quality(quality, content);
+  coded.equivalent_quality = equivalent_quality(quality, source.content);
   coded.tables = family.at_quality(quality);
-  PAC_TRY(coded.bytes, jpeg::encode(image, encode_options(coded.tables, options)));
+  PAC_TRY(coded.bytes, jpeg::encode(source.image, encode_options(source, coded.tables, options)));
   coded.encodes = 1;
   return coded;
 }
@@ -158,18 +173,20 @@ double coded_quality(double equivalent_quality, Content content) {
   return quality_from_scale(scale_from_quality(equivalent_quality) / 2);
 }
 
-Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double quality, const CodingOptions& options) {
+Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double quality, const CodingOptions& options,
+                                   ConstRgbView seen) {
   if (!(quality > 0 && quality <= 100)) return Failure{Error::bad_argument, 0, "quality must be in (0, 100]"};
   PAC_TRY(const ScaledTables family, ScaledTables::create(image, options.tables, options.subsampling));
-  return code(image, content, quality, family, options);
+  return code({image, content, seen}, quality, family, options);
 }
 
 Result<CodedImage> code_at_size(ConstRgbView image, Content content, uint64_t target_bytes,
-                                const CodingOptions& options) {
+                                const CodingOptions& options, ConstRgbView seen) {
   PAC_TRY(const ScaledTables family, ScaledTables::create(image, options.tables, options.subsampling));
-  SizeSearch search(image, family, target_bytes, options);
+  const Source source{image, content, seen};
+  SizeSearch search(source, family, target_bytes, options);
   PAC_TRY(const double quality, search.run());
-  PAC_TRY(CodedImage coded, code(image, content, shortest_quality(quality, family), family, options));
+  PAC_TRY(CodedImage coded, code(source, shortest_quality(quality, family), family, options));
   coded.encodes += search.encodes();
   return coded;
 }

@@ -29,7 +29,11 @@ enum class TableFamily : uint8_t { annex_k, adapted };
 // Everything besides quality; equal on both arms of a comparison.
 struct CodingOptions {
   TableFamily tables = TableFamily::annex_k;
-  jpeg::Huffman huffman = jpeg::Huffman::standard;            // the paper's IJG v4 default
+  // standard: the paper's IJG v4 default. difference: fixed tables made for difference images code D, standard ones H.
+  jpeg::Huffman huffman = jpeg::Huffman::standard;
+  // Where tables are adapted: ssim or visual let a trellis choose the levels of both arms, which puts errors where H is
+  // busy: in D too, by `seen`. psnr: no trellis. A client decodes the same way whatever this is.
+  jpeg::Tune masking = jpeg::Tune::psnr;
   jpeg::Subsampling subsampling = jpeg::Subsampling::yuv420;  // the paper's "4:1:1"
   int threads = 1;       // encodes tried at once; never changes the result. 0 = all
   Isa isa = best_isa();  // never changes the result
@@ -52,8 +56,10 @@ struct CodedImage {
   int encodes = 0;                // how many encodes the search took
 };
 
-// Codes `image` at a coded quality in (0, 100]. Fails with bad_argument as jpeg::encode.
-Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double quality, const CodingOptions& options);
+// Codes `image` at a coded quality in (0, 100]. seen: for a difference, H, which `masking` looks at (empty: at D
+// itself); an image is looked at itself. Fails with bad_argument as jpeg::encode.
+Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double quality, const CodingOptions& options,
+                                   ConstRgbView seen = {});
 
 // Codes `image` so that the whole file's size is as near to `target_bytes` as any scaling of the tables brings it.
 //
@@ -62,8 +68,8 @@ Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double q
 // target it codes every step in a window around that place, and stops early only at an exact hit.
 // Ties: of two sizes equally far from the target the smaller wins; of equal sizes the finer tables win.
 // `quality` comes back as the shortest decimal that selects the same tables.
-// A target below the smallest or above the largest file gives that file.
+// A target below the smallest or above the largest file gives that file. seen: as above.
 Result<CodedImage> code_at_size(ConstRgbView image, Content content, uint64_t target_bytes,
-                                const CodingOptions& options);
+                                const CodingOptions& options, ConstRgbView seen = {});
 
 }  // namespace pac::sim

@@ -94,10 +94,10 @@ struct CodedFrame {
 };
 
 Result<CodedFrame> code_jpeg(const FrameImages& images, const ServerOptions& options, uint64_t target_bytes) {
-  const ConstRgbView difference = images.difference.view();
-  PAC_TRY(CodedImage coded, target_bytes > 0
-                                ? code_at_size(difference, Content::difference, target_bytes, options.coding)
-                                : code_at_quality(difference, Content::difference, options.quality, options.coding));
+  const ConstRgbView difference = images.difference.view(), seen = images.high.view();
+  PAC_TRY(CodedImage coded,
+          target_bytes > 0 ? code_at_size(difference, Content::difference, target_bytes, options.coding, seen)
+                           : code_at_quality(difference, Content::difference, options.quality, options.coding, seen));
   PAC_TRY(const RgbImage decoded, jpeg::decode(coded.bytes, {}, options.isa));
   CodedFrame out;
   out.quality = coded.quality;

@@ -252,6 +252,7 @@ TEST_CASE("jpeg encode keeps to a size, takes tables from a file, and its preset
   CHECK(bytes("--effort fast") > bytes("--effort default"));
   CHECK(bytes("--effort best") < bytes("--effort default"));
   CHECK(bytes("--huffman standard --tables annex-k") > bytes("--huffman optimal --tables annex-k"));
+  CHECK(bytes("--huffman difference --tables annex-k") > bytes("--huffman optimal --tables annex-k"));
   CHECK(bytes("--subsampling 444") > bytes("--subsampling gray"));
   CHECK(bytes("--restart 4") > bytes(""));
 
@@ -376,6 +377,7 @@ TEST_CASE("compare matches both arms' bytes and writes a page of its own") {
   CHECK(json(folder.pac(compare + "--split antialiasing")).at("split") == "antialiasing");
   CHECK(folder.pac(compare + "--split lightning").code == 1);
   check_usage_error(folder.pac("compare letter --bytes 1500 -q 3"), "leave --quality out");
+  check_usage_error(folder.pac("compare letter --masking ssim"), "--tables adapted");
 }
 
 TEST_CASE("metrics compares sequences frame by frame") {

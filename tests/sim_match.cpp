@@ -16,9 +16,9 @@ namespace {
 using namespace pac;
 using sim::Content;
 
-sim::Renderings renderings() {
+sim::Renderings renderings(const char* split = "texture") {
   sim::RenderOptions options;
-  options.split = "texture";
+  options.split = split;
   options.samples = 4;
   auto result = sim::render_split(test::small_scene(false), test::small_camera(0, 1), options);
   REQUIRE(result.ok());
@@ -142,6 +142,44 @@ TEST_CASE("tables adapted to the difference image give less error at equal size 
     return arm->scores.rms;
   };
   CHECK(rms(adapted) < rms({}));
+}
+
+TEST_CASE("fixed Huffman tables for difference images shrink D's file, keep its pixels, and leave H's file alone") {
+  const sim::Renderings pictures = renderings("tessellation");
+  sim::CodingOptions standard, fixed, optimal;
+  fixed.huffman = jpeg::Huffman::difference;
+  optimal.huffman = jpeg::Huffman::optimal;
+  const auto code = [&](const RgbImage& image, Content content, const sim::CodingOptions& options) {
+    auto coded = sim::code_at_quality(image.view(), content, 41, options);
+    REQUIRE(coded.ok());
+    return coded->bytes;
+  };
+  const auto paper = code(pictures.difference, Content::difference, standard);
+  const auto one_pass = code(pictures.difference, Content::difference, fixed);
+  CHECK(one_pass.size() < paper.size());
+  CHECK(one_pass.size() > code(pictures.difference, Content::difference, optimal).size());
+  CHECK(mean_squared_error(jpeg::decode(one_pass)->view(), jpeg::decode(paper)->view()) == 0);
+  CHECK(code(pictures.high, Content::image, fixed) == code(pictures.high, Content::image, standard));
+}
+
+TEST_CASE("masking looks at H for the difference, at H itself for the image, and only with adapted tables") {
+  const sim::Renderings pictures = renderings();
+  sim::CodingOptions plain, masked;
+  masked.masking = jpeg::Tune::ssim;
+  const auto code = [&](const RgbImage& image, Content content, const sim::CodingOptions& options, bool sees_high) {
+    auto coded = sim::code_at_quality(image.view(), content, 41, options,
+                                      sees_high ? ConstRgbView(pictures.high.view()) : ConstRgbView());
+    REQUIRE(coded.ok());
+    return coded->bytes;
+  };
+  CHECK(code(pictures.difference, Content::difference, masked, true) ==
+        code(pictures.difference, Content::difference, plain, false));
+  plain.tables = masked.tables = sim::TableFamily::adapted;
+  const auto seen = code(pictures.difference, Content::difference, masked, true);
+  CHECK(seen.size() < code(pictures.difference, Content::difference, plain, true).size());
+  CHECK(seen != code(pictures.difference, Content::difference, masked, false));
+  CHECK(seen == code(pictures.difference, Content::difference, masked, true));
+  CHECK(code(pictures.high, Content::image, masked, true) == code(pictures.high, Content::image, masked, false));
 }
 
 TEST_CASE("quality outside (0, 100] and pictures without pixels are refused") {

@@ -68,8 +68,14 @@ void declare(Options& options, Request& request) {
                               {{"annex-k", TableFamily::annex_k}, {"adapted", TableFamily::adapted}},
                               "quantization tables of both arms' JPEG (annex-k)");
   options.choice<jpeg::Huffman>("--huffman", coding.huffman,
-                                {{"standard", jpeg::Huffman::standard}, {"optimal", jpeg::Huffman::optimal}},
-                                "codes of both arms' JPEG (standard, as the paper)");
+                                {{"standard", jpeg::Huffman::standard},
+                                 {"optimal", jpeg::Huffman::optimal},
+                                 {"difference", jpeg::Huffman::difference}},
+                                "codes of both arms' JPEG; difference: fixed ones for D, standard ones for H "
+                                "(standard, as the paper)");
+  options.choice<jpeg::Tune>("--masking", coding.masking,
+                             {{"none", jpeg::Tune::psnr}, {"ssim", jpeg::Tune::ssim}, {"visual", jpeg::Tune::visual}},
+                             "with adapted tables: a trellis puts errors of both arms where H is busy (none)");
   options.integer("--width", "W", render.width, 1, 32768, "pixels (the scene's own)");
   options.integer("--height", "H", render.height, 1, 32768, "pixels (the scene's own)");
   options.choice<int>("--samples", render.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
@@ -196,6 +202,9 @@ int run_animate(Args args) {
   Request request;
   declare(options, request);
   if (const auto code = options.parse(args)) return *code;
+  if (request.animation.coding.masking != jpeg::Tune::psnr &&
+      request.animation.coding.tables != sim::TableFamily::adapted)
+    return options.usage_error("--masking goes with --tables adapted");
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   sim::AnimationOptions& animation = request.animation;

@@ -39,8 +39,14 @@ void declare(Options& options, Request& request) {
                               {{"annex-k", TableFamily::annex_k}, {"adapted", TableFamily::adapted}},
                               "quantization tables of both arms (annex-k)");
   options.choice<jpeg::Huffman>("--huffman", coding.huffman,
-                                {{"standard", jpeg::Huffman::standard}, {"optimal", jpeg::Huffman::optimal}},
-                                "codes of both arms (standard, as the paper)");
+                                {{"standard", jpeg::Huffman::standard},
+                                 {"optimal", jpeg::Huffman::optimal},
+                                 {"difference", jpeg::Huffman::difference}},
+                                "codes of both arms; difference: fixed ones for D, standard ones for H (standard, as "
+                                "the paper)");
+  options.choice<jpeg::Tune>("--masking", coding.masking,
+                             {{"none", jpeg::Tune::psnr}, {"ssim", jpeg::Tune::ssim}, {"visual", jpeg::Tune::visual}},
+                             "with adapted tables: a trellis puts errors of both arms where H is busy (none)");
   options.choice<sim::Codec>("--codec", request.codec, {{"jpeg", sim::Codec::jpeg}}, "of both arms (jpeg)");
   options.integer("--width", "W", render.width, 1, 32768, "pixels (the scene's own)");
   options.integer("--height", "H", render.height, 1, 32768, "pixels (the scene's own)");
@@ -151,6 +157,8 @@ int run_compare(Args args) {
   if (const auto code = options.parse(args)) return *code;
   if (options.given("--bytes") && options.given("--quality"))
     return options.usage_error("--bytes chooses the quality itself: leave --quality out");
+  if (request.still.coding.masking != jpeg::Tune::psnr && request.still.coding.tables != sim::TableFamily::adapted)
+    return options.usage_error("--masking goes with --tables adapted");
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   source->pose(request.frame, kStillFramesPerSecond);
