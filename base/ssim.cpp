@@ -147,6 +147,7 @@ double ms_ssim(PlaneView<const uint8_t> reference, PlaneView<const uint8_t> test
   for (int side = std::min(reference.width, reference.height) / 2; n_scales < kExponents.size() && side >= kTaps;
        side /= 2)
     exponent_sum += kExponents[n_scales++];
+  if (n_scales == kExponents.size()) exponent_sum = 1;  // the paper's own, though they sum to 1.0001
   double product = 1;
   GrayImage a, b;  // own what the views show from the second scale on
   for (size_t scale = 0; scale < n_scales; ++scale) {

@@ -32,8 +32,9 @@ Pair make_pair(int width, int height, int damage) {
   return pair;
 }
 
-// SSIM as the paper writes it: a full 2-D window at each place, two passes, libm.
-double plain_ssim(PlaneView<const uint8_t> a, PlaneView<const uint8_t> b) {
+// SSIM as the paper writes it: a full 2-D window at each place, two passes, libm. with_means: else contrast and
+// structure alone.
+double plain_ssim(PlaneView<const uint8_t> a, PlaneView<const uint8_t> b, bool with_means = true) {
   double window[11][11], sum = 0;
   for (int i = 0; i < 11; ++i)
     for (int j = 0; j < 11; ++j) sum += window[i][j] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / 4.5);
@@ -55,9 +56,22 @@ double plain_ssim(PlaneView<const uint8_t> a, PlaneView<const uint8_t> b) {
           vb += w * q * q;
           cov += w * p * q;
         }
-      total += (2 * ma * mb + c1) * (2 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2));
+      const double means = (2 * ma * mb + c1) / (ma * ma + mb * mb + c1);
+      total += (with_means ? means : 1.0) * (2 * cov + c2) / (va + vb + c2);
     }
   return total / n;
+}
+
+// Rounded means of 2x2 samples.
+GrayImage plain_half(const GrayImage& image) {
+  GrayImage half(image.width() / 2, image.height() / 2);
+  for (int y = 0; y < half.height(); ++y)
+    for (int x = 0; x < half.width(); ++x) {
+      double sum = 0;
+      for (int i = 0; i < 4; ++i) sum += *image.pixel(2 * x + i % 2, 2 * y + i / 2);
+      *half.pixel(x, y) = static_cast<uint8_t>(std::floor(sum / 4 + 0.5));
+    }
+  return half;
 }
 
 RgbImage solid(int width, int height, int r, int g, int b) {
@@ -128,6 +142,20 @@ TEST_CASE("SSIM equals the formula applied window by window") {
     const GrayImage a = luma_of(pair.reference.view()), b = luma_of(pair.damaged.view());
     CHECK(ssim(a.view(), b.view()) == doctest::Approx(plain_ssim(a.view(), b.view())).epsilon(1e-10));
   }
+}
+
+TEST_CASE("MS-SSIM equals the product of its paper, equation 7, over five scales") {
+  constexpr double kExponents[5] = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+  const Pair pair = make_pair(192, 176, 40);
+  GrayImage a = luma_of(pair.reference.view()), b = luma_of(pair.damaged.view());
+  const double computed = ms_ssim(a.view(), b.view());
+  double expected = 1;
+  for (int scale = 0; scale < 5; ++scale) {
+    expected *= std::pow(plain_ssim(a.view(), b.view(), scale == 4), kExponents[scale]);
+    a = plain_half(a);
+    b = plain_half(b);
+  }
+  CHECK(computed == doctest::Approx(expected).epsilon(1e-9));
 }
 
 TEST_CASE("SSIM of two flat pictures is the ratio of their means alone") {

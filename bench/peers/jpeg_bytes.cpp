@@ -15,6 +15,7 @@
 #include "base/file_io.h"
 #include "base/image_io.h"
 #include "base/metrics.h"
+#include "base/psnr_hvs.h"
 #include "base/ssimulacra2.h"
 #include "bench/peers/libjpeg_turbo.h"
 #include "jpeg/jpeg.h"
@@ -25,7 +26,8 @@ using namespace pac;
 using Bytes = std::vector<uint8_t>;
 
 constexpr int kQualities[] = {15, 30, 45, 60, 75, 84, 90};
-constexpr const char* kMetricNames[] = {"PSNR-RGB", "PSNR-Y", "SSIM-Y", "SSIMULACRA2"};
+// The last two are those that two of mozjpeg's tables are made for.
+constexpr const char* kMetricNames[] = {"PSNR-RGB", "PSNR-Y", "SSIM-Y", "SSIMULACRA2", "PSNR-HVS-M", "MS-SSIM"};
 constexpr size_t kMetrics = std::size(kMetricNames);
 
 struct Point {
@@ -43,6 +45,8 @@ Point measure_file(const RgbImage& image, const Bytes& file) {
   // In dB, so that equal steps mean as much near 1 as elsewhere.
   point.quality[2] = -10.0 * std::log10(1.0 - ssim_luma(image.view(), decoded.view()));
   point.quality[3] = ssimulacra2(image.view(), decoded.view());
+  point.quality[4] = psnr_hvs_luma(image.view(), decoded.view()).psnr_hvs_m_db;
+  point.quality[5] = -10.0 * std::log10(1.0 - ms_ssim_luma(image.view(), decoded.view()));
   return point;
 }
 
