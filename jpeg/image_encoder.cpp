@@ -15,15 +15,15 @@
 namespace pac::jpeg {
 namespace {
 
-// Costs for every symbol that can occur, also those that did not yet: counts are scaled up and each gets one more.
-void smooth(uint32_t (&counts)[256]) {
-  constexpr uint32_t kWeight = 64;
-  for (uint32_t symbol = 0; symbol < 256; ++symbol) {
-    const uint32_t size = symbol & 15;
-    if (size == 0 && symbol != 0 && symbol != 0xF0) continue;
-    if (size > 10) continue;
-    counts[symbol] = counts[symbol] * kWeight + 1;
+// Tables with a code for every symbol that can occur, also those that did not yet.
+ScanTables complete_tables(const Histogram& histogram) {
+  ScanTables tables;
+  for (uint32_t i = 0; i < kTableCount; ++i) {
+    uint64_t counts[256];
+    for (size_t symbol = 0; symbol < 256; ++symbol) counts[symbol] = histogram.count[i][symbol];
+    tables.spec[i] = complete_huffman(i == kDc0 || i == kDc1, counts);
   }
+  return tables;
 }
 
 // Statistics of the trellis look at about so many blocks, those of DC alone at fewer.
@@ -202,14 +202,23 @@ void ImageEncoder::reserve_levels() {
 // Levels of one MCU row, rounded or, once the costs are known, optimized.
 void ImageEncoder::quantize(Band& band, int mcu_row) {
   band.source.quantize(mcu_row, quantizers_, band.levels);
-  for (int c = 0; use_trellis_ && c < band.source.frame().n_components; ++c) {
+  if (use_trellis_) optimize_levels(band, mcu_row);
+}
+
+// AC block by block; DC, whose prices depend on their neighbors, along the row.
+void ImageEncoder::optimize_levels(Band& band, int mcu_row) {
+  const Frame& frame = band.source.frame();
+  for (int c = 0; c < frame.n_components; ++c) {
     const size_t n = band.source.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
+    const int16_t* coefficients = band.source.row(c);
+    if (c == 0) band.importance.resize(n);
     for (size_t i = 0; i < n; ++i) {
-      const int16_t* coefficients = band.source.row(c) + 64 * i;
-      const float importance = c == 0 ? visibility_of(band, mcu_row, i) / mean_visibility_ : 1.0f;
-      trellis_quantize(coefficients, weights_[set], importance, costs_[set], band.levels.zigzag[c].data() + 64 * i,
-                       band.levels.nonzero[c][i]);
+      if (c == 0) band.importance[i] = visibility_of(band, mcu_row, i) / mean_visibility_;
+      trellis_quantize(coefficients + 64 * i, weights_[set], c == 0 ? band.importance[i] : 1.0f, costs_[set],
+                       band.levels.zigzag[c].data() + 64 * i, band.levels.nonzero[c][i]);
     }
+    band.dc_trellis.choose(frame, c, mcu_row, options_.restart_interval_mcus, coefficients,
+                           c == 0 ? band.importance.data() : nullptr, weights_[set], dc_costs_[set], band.levels);
   }
 }
 
@@ -227,12 +236,18 @@ void ImageEncoder::add_sums(Band& band, int mcu_row) const {
   }
 }
 
-// The sampled rows of a band.
+// The sampled rows of a band. Where rows are left out, predictions begin anew in each: what the histogram tells, and so
+// the file, must not depend on where bands begin.
 void ImageEncoder::tokenize(Band& band, int period) {
   band.sums = {};
   band.tokenizer.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
+  band.dc_trellis.reset();
   for (int row = band.first_row; row < band.end_row; ++row) {
     if (!is_sampled(row, period)) continue;
+    if (period > 1) {
+      band.tokenizer.restart_predictions();
+      band.dc_trellis.reset();
+    }
     quantize(band, row);
     band.tokenizer.add_mcu_row(row, band.levels);
     if (use_trellis_ && is_adapted()) add_sums(band, row);
@@ -268,13 +283,11 @@ void ImageEncoder::measure_costs(int period) {
   const bool is_optimal = options_.huffman == Huffman::optimal && options_.stream == nullptr;
   Histogram counts;
   if (is_optimal || use_trellis_) counts = histogram(period);
-  if (is_optimal) {
-    smooth(counts.count[kAc0]);
-    smooth(counts.count[kAc1]);
-    tables = optimal_tables(counts);
+  if (is_optimal) tables = complete_tables(counts);
+  for (size_t set = 0; set < 2; ++set) {
+    costs_[set] = ac_costs(tables.spec[set == 0 ? kAc0 : kAc1]);
+    dc_costs_[set] = dc_costs(tables.spec[set == 0 ? kDc0 : kDc1]);
   }
-  costs_[0] = ac_costs(tables.spec[kAc0]);
-  costs_[1] = ac_costs(tables.spec[kAc1]);
 }
 
 // The steps with the least squared error for the levels chosen: centroids, so to speak.
@@ -357,6 +370,7 @@ void ImageEncoder::write_band(Band& band, const ScanTables& tables, bool direct,
   band.writer.begin(tables, direct, sink);
   if (direct) {
     band.walker.reset(band.source.frame(), options_.restart_interval_mcus, band.first_row);
+    band.dc_trellis.reset();
     for (int row = band.first_row; row < band.end_row; ++row) {
       quantize(band, row);
       band.writer.write_mcu_row(row, band.levels, band.walker);

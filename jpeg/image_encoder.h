@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "jpeg/byte_sink.h"
 #include "jpeg/coefficients.h"
+#include "jpeg/dc_trellis.h"
 #include "jpeg/jpeg.h"
 #include "jpeg/table_design.h"
 #include "jpeg/tokenizer.h"
@@ -50,6 +51,8 @@ class ImageEncoder {
     CoefficientSource source;
     LevelSums sums;
     Levels levels;
+    std::vector<float> importance;  // of the luma blocks of an MCU row, for the trellis
+    DcTrellis dc_trellis;
     Tokenizer tokenizer;
     BlockWalker walker;
     ScanWriter writer;
@@ -72,6 +75,7 @@ class ImageEncoder {
   void for_each_band(Fn&& fn);
   int sample_period(int64_t max_blocks) const;
   void quantize(Band& band, int mcu_row);
+  void optimize_levels(Band& band, int mcu_row);
   void add_sums(Band& band, int mcu_row) const;
   void tokenize(Band& band, int period);
   Histogram histogram(int period);
@@ -94,6 +98,7 @@ class ImageEncoder {
   BlockQuantizer quantizers_[2];
   TrellisWeights weights_[2];
   AcCosts costs_[2];
+  DcCosts dc_costs_[2];
   ReferenceSteps reference_;            // of the trellis
   ChromaGain chroma_gain_;              // 1 where tables are not tuned
   Tune masking_ = Tune::psnr;           // options_.masking, or options_.tune where tables are tuned

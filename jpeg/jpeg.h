@@ -77,7 +77,7 @@ struct EncodeOptions {
   Huffman huffman = Huffman::optimal;
   int restart_interval_mcus = 0;  // 0..65535; 0 = none
   double dead_zone = 0.0;         // 0 rounds to nearest; d rounds |x|/q at 0.5 + d (0..0.49) for AC
-  bool trellis = false;           // rate-distortion choice of AC levels (then dead_zone only serves the first estimate)
+  bool trellis = false;           // rate-distortion choice of levels (then dead_zone only serves the first estimate)
   int threads = 1;                // 0 = all processors, at most 1024. Work is shared only where restart markers stand
                                   // between rows of MCUs (see row_restart_interval); results never depend on it
   // For a difference image, whose errors will be seen in the composite: the picture that shall be seen, H. For ssim and

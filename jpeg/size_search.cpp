@@ -59,18 +59,16 @@ class SizeSearch {
 
   // Writes the file of `units`, which fits. Where it leaves more than a hundredth of the target: steps of the next
   // finer tables one after the other, lowest frequencies first, as long as they fit; then sets that do not fit, with
-  // levels biased towards 0 as far as they must.
+  // levels biased towards 0 as far as they must; then the same with tables finer still.
   void write(int units, SizedFile& file) {
     file.quality = quality_of(units);
     Fill best{tables_at(units), file.quality, 0, size_at(units)};
-    const int next = best.size < enough() ? next_larger(units) : 0;
-    if (next > 0) {
-      const QuantTables coarser = best.tables, finer = tables_at(next);
-      const auto fits = [&](int n) { return consider(mixed(coarser, finer, n), quality_of(next), 0, best); };
-      // With none of the finer steps a quality may still differ by what else depends on it.
-      const int n_fitting = fits(0) ? bisect(kSteps + 1, fits) : -1;
-      for (int n = n_fitting + 1; n <= std::min(n_fitting + kTooFine, kSteps) && best.size < enough(); ++n)
-        bias(mixed(coarser, finer, n), quality_of(next), best);
+    const QuantTables coarser = best.tables;
+    int next = units;
+    for (int i = 0; i < kNextQualities && best.size < enough(); ++i) {
+      next = next_larger(next);
+      if (next == 0) break;
+      fill_up(coarser, next, best);
     }
     file.is_between_qualities = best.quality != file.quality || !equal(best.tables, tables_at(units));
     ByteSink sink(file.bytes);
@@ -80,7 +78,7 @@ class SizeSearch {
   }
 
  private:
-  static constexpr int kSteps = 128, kTooFine = 8, kBiases = 256, kNearBiases = 16;
+  static constexpr int kSteps = 128, kTooFine = 8, kBiases = 256, kNearBiases = 16, kNextQualities = 4;
 
   // What fills the target best so far.
   struct Fill {
@@ -118,6 +116,16 @@ class SizeSearch {
     const uint64_t bytes = size(tables, quality, bias);
     if (bytes <= target_ && bytes > best.size) best = {tables, quality, bias, bytes};
     return bytes <= target_;
+  }
+
+  // From these tables towards those of the larger quality `next`, which do not fit.
+  void fill_up(const QuantTables& coarser, int next, Fill& best) {
+    const QuantTables finer = tables_at(next);
+    const auto fits = [&](int n) { return consider(mixed(coarser, finer, n), quality_of(next), 0, best); };
+    // With none of the finer steps a quality may still differ by what else depends on it.
+    const int n_fitting = fits(0) ? bisect(kSteps + 1, fits) : -1;
+    for (int n = n_fitting + 1; n <= std::min(n_fitting + kTooFine, kSteps) && best.size < enough(); ++n)
+      bias(mixed(coarser, finer, n), quality_of(next), best);
   }
 
   // The least bias with which these tables fit, and its neighbors: sizes are not monotonic here either.

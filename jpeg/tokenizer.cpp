@@ -4,6 +4,7 @@ namespace pac::jpeg {
 
 void Tokenizer::reset(const Frame& frame, int restart_interval_mcus, int first_row) {
   frame_ = &frame;
+  restart_interval_mcus_ = restart_interval_mcus;
   walker_.reset(frame, restart_interval_mcus, first_row);
   tokens_.clear();
   for (Histogram& counts : counts_) counts = {};

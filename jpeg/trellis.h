@@ -1,4 +1,4 @@
-// Rate-distortion optimal AC levels of a block, given what each symbol costs.
+// Rate-distortion optimal AC levels of a block, given what each symbol costs. DC: jpeg/dc_trellis.h.
 #pragma once
 
 #include <cstdint>
