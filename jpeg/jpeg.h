@@ -144,7 +144,8 @@ struct SizedFile {
   QuantTables tables;                 // in the file
   bool is_between_qualities = false;  // finer than encode() at `quality`
 };
-// Searches real-valued quality in hundredths (quarters with adapted tables); options.quality is ignored. Where
+// Fails with bad_argument where options.stream gives the tables: they do not depend on a quality. Searches real-valued
+// quality in hundredths (quarters with adapted tables); options.quality is ignored. Where
 // options.tables are given they count as the tables of quality 50 and are scaled as annex_k_tables scales. Size is
 // *not* assumed to fall with quality: after bisection, all further table sets whose size comes within 1/32 above the
 // target, and 24 beyond the last one that fits, are tried, and the largest quality that fits wins. Where it leaves more
@@ -212,7 +213,7 @@ struct DecodeOptions {
   // 1, 2, 4 or 8: each side divided by it, rounded up, by transforms that make fewer samples. As djpeg -scale 1/N.
   int scale_denominator = 1;
   // Of the scaled picture: exactly those pixels of the whole one. Data of a file's only scan that come after the crop
-  // are not read, nor is damage in them seen.
+  // are not read, nor, where restart markers stand in order, those of intervals before it; damage in them is not seen.
   std::optional<Crop> crop = {};
 };
 

@@ -173,6 +173,8 @@ class SizeSearch {
 }  // namespace
 
 Result<SizedFile> encode_to_size(ConstRgbView image, const EncodeOptions& options, uint64_t target_bytes) {
+  if (options.stream != nullptr)
+    return Failure{Error::bad_argument, 0, "a stream's tables are fixed: no quality to search"};
   EncodeOptions valid = options;
   valid.quality = 50;
   PAC_CHECK(check_options(rgb_image(image), valid));

@@ -137,5 +137,17 @@ TEST_CASE("a decoder that has our tables file before an image reads it as one fi
   CHECK(max_difference(jpeg::decode(file)->view(), decoder.decode(part)->view()) == 0);
 }
 
+TEST_CASE("a stream's images cannot be fitted to a size: their tables are fixed") {
+  const RgbImage image = test_image(32, 24);
+  const auto tables = *jpeg::StreamTables::standard(jpeg::annex_k_tables(50));
+  EncodeOptions options;
+  options.stream = &tables;
+  const auto refused = jpeg::encode_to_size(image.view(), options, 100000);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().error == Error::bad_argument);
+  options.stream = nullptr;
+  CHECK(jpeg::encode_to_size(image.view(), options, 100000).ok());
+}
+
 }  // namespace
 }  // namespace pac::test
