@@ -125,6 +125,9 @@ TEST_CASE("--json prints one JSON object and nothing else, for every command tha
   const auto info = json(folder.pac("jpeg info a.jpg --json"));
   CHECK(number(info, "height") == 48);
   CHECK(info.at("markers[0].name") == "SOI");
+  for (const char* key : {"icc_profile_bytes", "exif_bytes", "xmp_bytes"}) CHECK(number(info, key) == 0);
+  const std::string profiled = PAC_SOURCE_DIR "/tests/fuzz/corpus/jpeg_decode/icc.jpg";
+  CHECK(number(json(folder.pac("jpeg info " + profiled + " --json")), "icc_profile_bytes") == 300);
   CHECK(number(json(folder.pac("jpeg decode a.jpg -o b.png --json")), "width") == 64);
   const auto metrics = json(folder.pac("metrics a.png b.png --json --map map.png"));
   CHECK(number(metrics, "rms") > 0);

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "jpeg/jpeg.h"
+#include "jpeg/metadata.h"
 #include "sim/cli/command.h"
 #include "sim/cli/image_files.h"
 
@@ -83,7 +84,7 @@ void print_table(int index, const jpeg::QuantTable& table) {
   }
 }
 
-void print_info(const jpeg::Info& info, std::span<const uint8_t> file) {
+void print_info(const jpeg::Info& info, const jpeg::Metadata& metadata, std::span<const uint8_t> file) {
   std::printf("size              %d x %d pixels, %zu bytes\n", info.width, info.height, file.size());
   std::printf("process           %s, %d bits\n", process_name(info.start_of_frame), info.precision_bits);
   std::printf("color             %s", color_name(info.color));
@@ -100,7 +101,12 @@ void print_info(const jpeg::Info& info, std::span<const uint8_t> file) {
                                           : "(aspect ratio)");
   if (info.adobe_transform >= 0) std::printf("Adobe transform   %d\n", info.adobe_transform);
   if (info.exif_orientation > 0) std::printf("Exif orientation  %d (not applied)\n", info.exif_orientation);
-  if (info.has_icc_profile) std::printf("ICC profile       yes (not applied)\n");
+  if (!metadata.icc_profile.empty())
+    std::printf("ICC profile       %s bytes (not applied)\n", grouped(metadata.icc_profile.size()).c_str());
+  else if (info.has_icc_profile)
+    std::printf("ICC profile       broken\n");
+  if (!metadata.exif.empty()) std::printf("Exif              %s bytes\n", grouped(metadata.exif.size()).c_str());
+  if (!metadata.xmp.empty()) std::printf("XMP               %s bytes\n", grouped(metadata.xmp.size()).c_str());
   for (const jpeg::ByteRange& comment : info.comments)
     std::printf("comment           %s\n", comment_text(file, comment).c_str());
   if (info.unsupported != nullptr) std::printf("cannot be decoded %s\n", info.unsupported);
@@ -149,7 +155,7 @@ void json_tables_and_markers(sim::JsonWriter& json, const jpeg::Info& info) {
   json.end_array();
 }
 
-int print_info_json(const jpeg::Info& info, std::span<const uint8_t> file) {
+int print_info_json(const jpeg::Info& info, const jpeg::Metadata& metadata, std::span<const uint8_t> file) {
   sim::JsonWriter json;
   json.begin_object();
   json.field("bytes", uint64_t{file.size()});
@@ -169,6 +175,9 @@ int print_info_json(const jpeg::Info& info, std::span<const uint8_t> file) {
   json.field("adobe_transform", info.adobe_transform);
   json.field("exif_orientation", info.exif_orientation);
   json.field("has_icc_profile", info.has_icc_profile);
+  json.field("icc_profile_bytes", uint64_t{metadata.icc_profile.size()});
+  json.field("exif_bytes", uint64_t{metadata.exif.size()});
+  json.field("xmp_bytes", uint64_t{metadata.xmp.size()});
   json.begin_array("comments");
   for (const jpeg::ByteRange& comment : info.comments) json.value(comment_text(file, comment));
   json.end_array();
@@ -195,8 +204,10 @@ int run_jpeg_info(Args args) {
   if (!bytes.ok()) return data_error(in, bytes.failure());
   const auto info = jpeg::read_info(*bytes);
   if (!info.ok()) return data_error(in, info.failure());
-  if (options.json) return print_info_json(*info, *bytes);
-  print_info(*info, *bytes);
+  const auto found = jpeg::read_metadata(*bytes);
+  if (!found.ok()) return data_error(in, found.failure());
+  if (options.json) return print_info_json(*info, found->metadata, *bytes);
+  print_info(*info, found->metadata, *bytes);
   return kDone;
 }
 
