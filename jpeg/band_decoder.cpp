@@ -28,31 +28,14 @@ int rows_of_blocks(const BandedScan& job, int c) {
   return job.scan->n_components > 1 ? job.frame->components[c].v : 1;
 }
 
-// The next marker at or after `at`, or null.
-const uint8_t* next_marker(const uint8_t* at, const uint8_t* end) {
-  while (at < end) {
-    at = static_cast<const uint8_t*>(std::memchr(at, 0xFF, static_cast<size_t>(end - at)));
-    if (at == nullptr || at + 1 == end) return nullptr;
-    if (at[1] != 0 && at[1] != 0xFF) return at;
-    at += at[1] == 0 ? 2 : 1;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 // True if exactly the markers that are due stand in the data, in order.
-bool BandDecoder::find_restarts(const BandedScan& job) {
-  restarts_.clear();
-  const uint8_t *const begin = job.bytes.data(), *const end = begin + job.bytes.size();
-  const uint8_t* at = begin + job.data_offset;
+bool BandDecoder::find_all_restarts(const BandedScan& job) {
   const auto n_due = static_cast<uint64_t>(n_intervals(*job.scan) - 1);
-  while ((at = next_marker(at, end)) != nullptr && is_restart(at[1])) {
-    if (restarts_.size() == n_due || at[1] != (kRst0 | (restarts_.size() & 7))) return false;
-    restarts_.push_back(static_cast<uint64_t>(at - begin));
-    at += 2;
-  }
-  return restarts_.size() == n_due;
+  if (!find_restarts(job.bytes, job.data_offset, n_due, restarts_)) return false;
+  data_end_ = find_marker(job.bytes, restarts_.empty() ? job.data_offset : restarts_.back() + 2);
+  return data_end_ == job.bytes.size() || !is_restart(job.bytes[data_end_ + 1]);
 }
 
 void BandDecoder::split(const BandedScan& job, int n_threads, const Kernels& kernels) {
@@ -69,6 +52,18 @@ void BandDecoder::split(const BandedScan& job, int n_threads, const Kernels& ker
     band.first_interval = int64_t{band.first_row} * scan.mcus_per_row / scan.restart_interval;
     band.sound = false;
   }
+  // Costliest first: the last thread to finish then has little left to do. Bytes tell most of what a band takes.
+  order_.resize(bands_.size());
+  std::iota(order_.begin(), order_.end(), size_t{0});
+  const auto end_of = [&](size_t i) { return i + 1 < bands_.size() ? offset_of(job, bands_[i + 1]) : data_end_; };
+  std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) {
+    return end_of(a) - offset_of(job, bands_[a]) > end_of(b) - offset_of(job, bands_[b]);
+  });
+}
+
+// Where the data of its first interval begin.
+uint64_t BandDecoder::offset_of(const BandedScan& job, const Band& band) const {
+  return band.first_row == 0 ? job.data_offset : restarts_[static_cast<size_t>(band.first_interval - 1)] + 2;
 }
 
 // The first pixel row of a band and the last one lean on samples of two bands: write_seam() makes them.
@@ -99,36 +94,38 @@ bool BandDecoder::ends_well(const BandedScan& job, const Band& band) const {
 void BandDecoder::decode_band(const BandedScan& job, Band& band, const Kernels& kernels, RgbView out) const {
   Damage damage;
   band.planes.reset(*job.frame, false, job.color, kernels);
-  const uint64_t offset =
-      band.first_row == 0 ? job.data_offset : restarts_[static_cast<size_t>(band.first_interval - 1)] + 2;
-  band.mcus.start(job.bytes, *job.scan, offset, damage, band.first_interval);
+  band.mcus.start(job.bytes, *job.scan, offset_of(job, band), damage, band.first_interval);
   band.sound = decode_rows(job, band, damage, out) && ends_well(job, band);
 }
 
-void BandDecoder::write_seam(const BandedScan& job, Band& above, const Band& below, const Kernels& kernels,
-                             RgbView out) {
-  seam_.reset(*job.frame, false, job.color, kernels);
+void BandDecoder::write_seam(const BandedScan& job, Band& above, Band& below, const Kernels& kernels,
+                             RgbView out) const {
+  ComponentPlanes& seam = below.seam;
+  seam.reset(*job.frame, false, job.color, kernels);
   for (int c = 0; c < job.frame->n_components; ++c) {
     const int first = below.first_row * rows_of_blocks(job, c);
-    const ptrdiff_t stride = seam_.stride(c), last = 7 * stride;
-    std::memcpy(seam_.block_row(c, first - 1) + last, above.planes.block_row(c, first - 1) + last,
+    const ptrdiff_t stride = seam.stride(c), last = 7 * stride;
+    std::memcpy(seam.block_row(c, first - 1) + last, above.planes.block_row(c, first - 1) + last,
                 static_cast<size_t>(stride));
-    std::memcpy(seam_.block_row(c, first), below.top[c].data(), static_cast<size_t>(stride));
+    std::memcpy(seam.block_row(c, first), below.top[c].data(), static_cast<size_t>(stride));
   }
   const int y = below.first_row * mcu_height(job);
-  seam_.write_rgb(y - 1, y + 1, out);
+  seam.write_rgb(y - 1, y + 1, out);
 }
 
 std::optional<uint64_t> BandDecoder::decode(const BandedScan& job, ThreadPool& pool, const Kernels& kernels,
                                             RgbView out) {
   const Scan& scan = *job.scan;
-  if (scan.restart_interval == 0 || period_rows(scan) >= scan.mcu_rows || !find_restarts(job)) return {};
+  if (scan.restart_interval == 0 || period_rows(scan) >= scan.mcu_rows || !find_all_restarts(job)) return {};
   split(job, pool.thread_count(), kernels);
   pool.for_each(static_cast<int64_t>(bands_.size()),
-                [&](int64_t i) { decode_band(job, bands_[static_cast<size_t>(i)], kernels, out); });
+                [&](int64_t i) { decode_band(job, bands_[order_[static_cast<size_t>(i)]], kernels, out); });
   for (const Band& band : bands_)
     if (!band.sound) return {};
-  for (size_t i = 1; i < bands_.size(); ++i) write_seam(job, bands_[i - 1], bands_[i], kernels, out);
+  pool.for_each(static_cast<int64_t>(bands_.size()) - 1, [&](int64_t i) {
+    const auto above = static_cast<size_t>(i);
+    write_seam(job, bands_[above], bands_[above + 1], kernels, out);
+  });
   return bands_.back().mcus.byte_offset();
 }
 

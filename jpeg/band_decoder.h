@@ -36,19 +36,22 @@ class BandDecoder {
     bool sound = false;
     McuDecoder mcus;
     ComponentPlanes planes;
+    ComponentPlanes seam;                      // with the band above
     std::vector<uint8_t> top[kMaxComponents];  // its first row of samples, for the band above
   };
 
-  bool find_restarts(const BandedScan& job);
+  bool find_all_restarts(const BandedScan& job);
   void split(const BandedScan& job, int n_threads, const Kernels& kernels);
+  uint64_t offset_of(const BandedScan& job, const Band& band) const;
   void decode_band(const BandedScan& job, Band& band, const Kernels& kernels, RgbView out) const;
   bool decode_rows(const BandedScan& job, Band& band, Damage& damage, RgbView out) const;
   bool ends_well(const BandedScan& job, const Band& band) const;
-  void write_seam(const BandedScan& job, Band& above, const Band& below, const Kernels& kernels, RgbView out);
+  void write_seam(const BandedScan& job, Band& above, Band& below, const Kernels& kernels, RgbView out) const;
 
   std::vector<uint64_t> restarts_;  // offsets of the markers
+  uint64_t data_end_ = 0;           // offset of what follows the scan's data
   std::vector<Band> bands_;
-  ComponentPlanes seam_;
+  std::vector<size_t> order_;  // of bands_, costliest first
 };
 
 }  // namespace pac::jpeg

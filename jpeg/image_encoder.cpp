@@ -81,6 +81,8 @@ void ImageEncoder::split(const Frame& frame) {
     n_bands = std::min(ceil_div(frame.mcu_rows, period), kBandsPerThread * n_threads);
   }
   bands_.resize(static_cast<size_t>(n_bands));
+  order_.resize(bands_.size());
+  std::iota(order_.begin(), order_.end(), size_t{0});
   const int n_periods = ceil_div(frame.mcu_rows, period);
   for (int i = 0; i < n_bands; ++i) {
     Band& band = bands_[static_cast<size_t>(i)];
@@ -95,7 +97,8 @@ void ImageEncoder::for_each_band(Fn&& fn) {
   if (bands_.size() == 1)
     fn(bands_[0]);
   else
-    pool_->for_each(static_cast<int64_t>(bands_.size()), [&](int64_t i) { fn(bands_[static_cast<size_t>(i)]); });
+    pool_->for_each(static_cast<int64_t>(bands_.size()),
+                    [&](int64_t i) { fn(bands_[order_[static_cast<size_t>(i)]]); });
 }
 
 void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options, bool keep_coefficients) {
@@ -256,9 +259,17 @@ void ImageEncoder::tokenize(Band& band, int period) {
 
 Histogram ImageEncoder::histogram(int period) {
   for_each_band([&](Band& band) { tokenize(band, period); });
+  order_bands();
   Histogram sum;
   for (const Band& band : bands_) band.tokenizer.add_histogram(sum);
   return sum;
+}
+
+void ImageEncoder::order_bands() {
+  const auto n_tokens = [&](size_t i) { return bands_[i].tokenizer.end() - bands_[i].tokenizer.begin(); };
+  // Not std::stable_sort(), which allocates.
+  std::sort(order_.begin(), order_.end(),
+            [&](size_t a, size_t b) { return n_tokens(a) != n_tokens(b) ? n_tokens(a) > n_tokens(b) : a < b; });
 }
 
 // Errors hide in busy blocks of luma; squared error knows nothing of it.

@@ -79,6 +79,7 @@ class ImageEncoder {
   void add_sums(Band& band, int mcu_row) const;
   void tokenize(Band& band, int period);
   Histogram histogram(int period);
+  void order_bands();
   void write_entropy_coded(const ScanTables& tables, bool direct, ByteSink& sink);
   void write_band(Band& band, const ScanTables& tables, bool direct, ByteSink& sink);
   void prepare(QuantTables& tables, double quality);
@@ -92,7 +93,8 @@ class ImageEncoder {
   EncodeOptions options_;
   double bias_ = 0;
   const Kernels* kernels_ = nullptr;
-  std::vector<Band> bands_;  // at least one
+  std::vector<Band> bands_;    // at least one
+  std::vector<size_t> order_;  // of bands_: those that had most tokens first, so that threads end together
   std::optional<ThreadPool> pool_;
   TableDesigner designer_;
   BlockQuantizer quantizers_[2];

@@ -23,12 +23,6 @@ const char* text_of(BlockError error) {
 
 }  // namespace
 
-uint64_t find_marker(std::span<const uint8_t> bytes, uint64_t at) {
-  for (; at + 1 < bytes.size(); ++at)
-    if (bytes[at] == 0xFF && bytes[at + 1] != 0 && bytes[at + 1] != 0xFF) return at;
-  return bytes.size();
-}
-
 void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_t offset, Damage& damage,
                        int64_t interval) {
   bytes_ = bytes;
@@ -52,6 +46,15 @@ void McuDecoder::start(std::span<const uint8_t> bytes, const Scan& scan, uint64_
   if (!scan.keeps_levels) set_up_slots(0);
 }
 
+void McuDecoder::jump(uint64_t offset, int64_t interval) {
+  entropy_.restart_at(offset);
+  scan_.to_restart = scan_.restart_interval;
+  scan_.next_restart = static_cast<int>(interval & 7);
+  scan_.next_mcu = interval * scan_.restart_interval;
+  scan_.resume = 0;
+  for (ScanComponent& sc : scan_.components) sc.dc = 0;
+}
+
 // The blocks of each component in turn [T.81 A.2.3]: of the batch (as if of row 0), or of a row of MCUs whose levels
 // are kept.
 void McuDecoder::set_up_slots(int mcu_row) {
@@ -70,7 +73,8 @@ void McuDecoder::set_up_slots(int mcu_row) {
 
 Result<void> McuDecoder::decode_row(int mcu_row, ComponentPlanes& planes) {
   if (scan_.keeps_levels) return collect_row(mcu_row);
-  for (int mcu = 0; mcu < scan_.mcus_per_row; mcu += kBatchMcus) {
+  const int64_t first = scan_.next_mcu - int64_t{mcu_row} * scan_.mcus_per_row;  // above 0 behind a jump
+  for (int mcu = static_cast<int>(std::max<int64_t>(first, 0)); mcu < scan_.mcus_per_row; mcu += kBatchMcus) {
     const int n = std::min(kBatchMcus, scan_.mcus_per_row - mcu);
     for (int i = 0; i < scan_.n_components; ++i) {
       std::fill(levels_[i].begin(), levels_[i].end(), int16_t{0});

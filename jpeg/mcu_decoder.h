@@ -11,6 +11,7 @@
 #include "jpeg/frame.h"
 #include "jpeg/picture_window.h"
 #include "jpeg/progressive.h"
+#include "jpeg/restart_markers.h"
 #include "jpeg/scan_reader.h"
 
 namespace pac::jpeg {
@@ -63,9 +64,6 @@ struct Scan {
   int64_t resume = 0;        // MCUs before this one are lost
 };
 
-// Offset of the next 0xFF that starts a marker, at or after `at`; the end of the file if there is none.
-uint64_t find_marker(std::span<const uint8_t> bytes, uint64_t at);
-
 // Keeps its buffers from scan to scan. start(), then rows in order.
 class McuDecoder {
  public:
@@ -74,7 +72,12 @@ class McuDecoder {
   // At the start of the restart interval number `interval`, whose data begin at `offset`. Levels and `last` of a
   // sequential scan are set here. `damage` must outlive the rows, as the bytes and what `scan` points to.
   void start(std::span<const uint8_t> bytes, const Scan& scan, uint64_t offset, Damage& damage, int64_t interval = 0);
-  // One MCU row. In lenient mode never fails.
+  // Goes on with a later restart interval, whose data begin at `offset`: MCUs before it are not read. Not for levels
+  // that are kept.
+  void jump(uint64_t offset, int64_t interval);
+  // Number of the MCU that is read next.
+  int64_t next_mcu() const { return scan_.next_mcu; }
+  // One MCU row, from next_mcu() on where jump() went into it. In lenient mode never fails.
   Result<void> decode_row(int mcu_row, ComponentPlanes& planes);
   // Behind the last MCU read: its next byte, or the marker.
   uint64_t byte_offset() const { return entropy_.byte_offset(); }

@@ -70,9 +70,9 @@ Result<void> ScanDecoder::check_memory(const DecodeRequest& request) {
   if (need > request.limits.max_bytes)
     return Failure{Error::limit_exceeded, reader_.headers().frame_offset,
                    "decoded image needs more memory than the limit"};
-  // Bands have a ring of two MCU rows each, together at most twice the image.
+  // Bands have two rings of two MCU rows each, together at most four times the image.
   use_bands_ = single_scan_ && pool_ && scaled_.scale == 1 && !is_partial_ &&
-               need + 2 * ComponentPlanes::size_bytes(frame, true) <= request.limits.max_bytes;
+               need + 4 * ComponentPlanes::size_bytes(frame, true) <= request.limits.max_bytes;
   return {};
 }
 
@@ -204,12 +204,35 @@ Result<void> ScanDecoder::decode_scan(const ScanHeader& header) {
   const int mcu_height = 8 / scaled_.scale * (header.n_components > 1 ? scaled_.frame.v_max : 1);
   const int end = single_scan_ && is_partial_ ? std::min(scan.needed.end_row, scan.mcu_rows) : scan.mcu_rows;
   mcus_.start(bytes_, scan, header.data_offset, damage_);
-  for (int row = 0; row < end && !output_.is_stopped(); ++row) {
+  find_crop_restarts(header, scan, end);
+  for (int row = skip_to_crop(scan, 0); row < end && !output_.is_stopped(); ++row) {
+    skip_to_crop(scan, row);
     PAC_CHECK(mcus_.decode_row(row, planes_));
     if (single_scan_ && wanted_ == Wanted::rows) write_finished_rows(row, scan.mcu_rows, mcu_height);
   }
   position_ = mcus_.byte_offset();
   return {};
+}
+
+// Of a crop's only scan: the markers before the last interval that it needs, where all of them are in order.
+void ScanDecoder::find_crop_restarts(const ScanHeader& header, const Scan& scan, int end_row) {
+  crop_restarts_.clear();
+  if (!single_scan_ || !is_partial_ || scan.restart_interval == 0 || end_row == 0) return;
+  const int64_t last_mcu = int64_t{end_row - 1} * scan.mcus_per_row + scan.needed.first_column;
+  const auto n = static_cast<uint64_t>(last_mcu / scan.restart_interval);
+  if (!find_restarts(bytes_, header.data_offset, n, crop_restarts_)) crop_restarts_.clear();
+}
+
+// Before a row: jumps over the intervals that end before the first MCU needed in it, or in the first row needed.
+// Returns the row to go on with: an interval may begin before the row whose MCUs it holds.
+int ScanDecoder::skip_to_crop(const Scan& scan, int row) {
+  if (crop_restarts_.empty()) return row;
+  const int64_t wanted = int64_t{std::max(row, scan.needed.first_row)} * scan.mcus_per_row + scan.needed.first_column;
+  const auto interval = std::min<int64_t>(wanted / scan.restart_interval, static_cast<int64_t>(crop_restarts_.size()));
+  const int64_t mcu = interval * scan.restart_interval;
+  if (mcu <= mcus_.next_mcu()) return row;
+  mcus_.jump(crop_restarts_[static_cast<size_t>(interval - 1)] + 2, interval);
+  return static_cast<int>(mcu / scan.mcus_per_row);
 }
 
 bool ScanDecoder::decode_bands(const ScanHeader& header, const Scan& scan) {

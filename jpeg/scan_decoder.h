@@ -59,6 +59,8 @@ class ScanDecoder {
   const AcPairs* set_up_pairs(uint8_t id);
   Result<void> set_up_component(const ScanHeader& header, int i, ScanComponent& sc);
   Result<void> decode_scan(const ScanHeader& header);
+  void find_crop_restarts(const ScanHeader& header, const Scan& scan, int end_row);
+  int skip_to_crop(const Scan& scan, int row);
   bool decode_bands(const ScanHeader& header, const Scan& scan);
   void transform_progressive();
   void write_finished_rows(int mcu_row, int mcu_rows, int mcu_height);
@@ -84,10 +86,11 @@ class ScanDecoder {
   McuDecoder mcus_;
   BandDecoder bands_;
   bool use_bands_ = false;
-  std::optional<ThreadPool> pool_;  // where several threads decode
-  HuffmanDecoder tables_[2][4];     // [class][destination]
-  HuffmanSpec table_specs_[2][4];   // that tables_ were made of
-  AcPairs ac_pairs_[4];             // made of tables_[1], where has_ac_pairs_
+  std::vector<uint64_t> crop_restarts_;  // offsets of markers that a crop may go to; empty: it must read all MCUs
+  std::optional<ThreadPool> pool_;       // where several threads decode
+  HuffmanDecoder tables_[2][4];          // [class][destination]
+  HuffmanSpec table_specs_[2][4];        // that tables_ were made of
+  AcPairs ac_pairs_[4];                  // made of tables_[1], where has_ac_pairs_
   bool has_ac_pairs_[4] = {};
   uint16_t steps_[kMaxComponents][64] = {};
   std::vector<int16_t> levels_[kMaxComponents];

@@ -163,6 +163,51 @@ TEST_CASE("damage below a crop goes unnoticed, damage above it does not") {
   CHECK_FALSE(jpeg::decode(cut, options).ok());
 }
 
+// Where the data of restart interval 1, 2, ... begin.
+std::vector<size_t> restart_offsets(const std::vector<uint8_t>& file) {
+  std::vector<size_t> offsets;
+  for (size_t i = jpeg::read_info(file)->header_bytes; i + 1 < file.size(); ++i)
+    if (file[i] == 0xFF && file[i + 1] >= 0xD0 && file[i + 1] <= 0xD7) offsets.push_back(i + 2);
+  return offsets;
+}
+
+TEST_CASE("restart intervals that a crop does not need are not decoded, wherever they begin in a row") {
+  for (const int interval : {1, 3, 4, 7, 11}) {
+    CAPTURE(interval);
+    jpeg::EncodeOptions encode;
+    encode.restart_interval_mcus = interval;  // of 8 MCUs in a row, 6 rows
+    const auto file = *jpeg::encode(test_image(128, 96).view(), encode);
+    const auto whole = *jpeg::decode(file);
+    for (const int scale : {1, 2}) {
+      const auto shown = *jpeg::decode(file, scaled(scale));
+      require_crop(file, shown, {100 / scale, 70 / scale, 20 / scale, 20 / scale}, scale);
+      require_crop(file, shown, {0, 50 / scale, 128 / scale, 2}, scale);
+    }
+    // Undefined codes in the first interval: the whole picture is lost, the crop is not.
+    auto damaged = file;
+    const size_t begin = jpeg::read_info(file)->header_bytes, end = restart_offsets(file).front() - 2;
+    for (size_t i = begin; i < end; ++i) damaged[i] = i % 2 == begin % 2 ? 0xFF : 0x00;
+    CHECK_FALSE(jpeg::decode(damaged).ok());
+    require_crop(damaged, whole, {100, 70, 20, 20}, 1);
+  }
+}
+
+TEST_CASE("where a restart marker before a crop is missing, the crop is as damaged as the whole picture") {
+  jpeg::EncodeOptions encode;
+  encode.restart_interval_mcus = 4;
+  auto file = *jpeg::encode(test_image(128, 96).view(), encode);
+  file[restart_offsets(file)[1] - 1] = 0xD5;
+  DecodeOptions options;
+  options.crop = Crop{100, 70, 20, 20};
+  CHECK_FALSE(jpeg::decode(file, options).ok());
+  const auto whole = jpeg::decode_lenient(file);
+  const auto part = jpeg::decode_lenient(file, options);
+  REQUIRE(whole.ok());
+  REQUIRE(part.ok());
+  const ConstRgbView expected{whole->image.pixel(100, 70), 20, 20, whole->image.stride()};
+  CHECK(max_difference(part->image.view(), expected) == 0);
+}
+
 TEST_CASE("a reused decoder crops and scales as the functions do") {
   const auto file = *jpeg::encode(test_image(50, 40).view());
   DecodeOptions options = scaled(2);
