@@ -192,10 +192,8 @@ void McuDecoder::transform_batch(int mcu_row, int first_mcu, int n_mcus, const S
     const int size = planes.block_size(sc.index);
     uint8_t* out = planes.block_row(sc.index, mcu_row * sc.v + by) + size * first_mcu * sc.h;
     const auto n = static_cast<size_t>(n_mcus * sc.h);
-    if (size == 8)
-      kernels_->block.idct_islow(sc.levels + 64 * first, sc.steps, sc.last + first, n, out, planes.stride(sc.index));
-    else
-      idct_reduced(size, sc.levels + 64 * first, sc.steps, n, out, planes.stride(sc.index));
+    idct_to_size(kernels_->block, size, sc.levels + 64 * first, sc.steps, sc.last + first, n, out,
+                 planes.stride(sc.index));
   }
 }
 

@@ -253,10 +253,7 @@ void ScanDecoder::transform_progressive() {
       for (int by = row * component.v; by < (row + 1) * component.v; ++by) {
         const int16_t* levels = levels_[c].data() + 64 * (ptrdiff_t{component.padded_width_blocks} * by + first);
         uint8_t* out = planes_.block_row(c, by) + ptrdiff_t{size} * first;
-        if (size == 8)
-          kernels_->block.idct_islow(levels, steps_[c], last.data(), n, out, planes_.stride(c));
-        else
-          idct_reduced(size, levels, steps_[c], n, out, planes_.stride(c));
+        idct_to_size(kernels_->block, size, levels, steps_[c], last.data(), n, out, planes_.stride(c));
       }
     }
     if (wanted_ == Wanted::rows) write_finished_rows(row, frame.mcu_rows, 8 / scaled_.scale * frame.v_max);

@@ -82,6 +82,35 @@ TEST_CASE("idct_islow: every instruction set gives the scalar bits, whatever the
   }
 }
 
+TEST_CASE("reduced transforms: every instruction set gives the scalar bits, whatever the input") {
+  KernelCheck check(8192);
+  struct Range {
+    int64_t level, step;
+  };
+  for (const Range& range : {Range{20, 60}, Range{2047, 255}, Range{32767, 65535}}) {
+    for (const Pattern pattern : kPatterns) {
+      CAPTURE(pattern_name(pattern));
+      for (uint64_t seed = 0; seed < 36; ++seed) {
+        const size_t n = seed % (kMaxBlocks + 1), size = size_t{1} << seed / 6 % 3;
+        const auto stride = static_cast<ptrdiff_t>(size * n + seed % 3 * 5);
+        const size_t bytes = n == 0 ? 0 : (size - 1) * static_cast<size_t>(stride) + size * n;
+        const Guard guard = kGuards[seed / 2 % 2];
+        const int64_t lowest = range.level == 32767 ? -32768 : -range.level;
+        const int16_t* levels =
+            check.input<int16_t>(0, 64 * n, guard, seed * 2 % 64, pattern, lowest, range.level, seed);
+        const uint16_t* steps =
+            check.input<uint16_t>(1, 64, guard, seed * 6 % 64, Pattern::random, 1, range.step, seed);
+        check.compare<uint8_t>(bytes, guard, seed * 3 % 64, [&](const Kernels& table, uint8_t* out) {
+          const auto kernel = size == 4   ? table.block.idct_4x4
+                              : size == 2 ? table.block.idct_2x2
+                                          : table.block.idct_1x1;
+          kernel(levels, steps, n, out, stride);
+        });
+      }
+    }
+  }
+}
+
 TEST_CASE("idct_islow: every DC level alone, with and without the promise that it is alone") {
   KernelCheck check(8192);
   int16_t levels[64] = {};

@@ -24,6 +24,16 @@ struct alignas(64) BlockQuantizer {
                        // below the divisor, so that 0 stays 0
 };
 
+// Of idct_4x4 and idct_2x2: 13-bit fixed point, for u = 2 and 6, and for u = 1, 3, 5, 7 (reduced_idct_scalar.cpp).
+struct ReducedIdctFactors {
+  int32_t even2 = 15137, even6 = -6270;  // 1.847759065, -0.765366865 at X = 0; X = 1: negated
+  int32_t odd4[2][4] = {
+      {20995, 7373, -4926, -4176},   // 2.562915447, 0.899976223, -0.601344887, -0.509795579
+      {8697, -17799, 11893, -1730},  // 1.061594337, -2.172734803, 1.451774981, -0.211164243
+  };
+  int32_t odd2[4] = {29692, -10426, 6967, -5906};  // 3.624509785, -1.272758580, 0.850430095, -0.720959822
+};
+
 struct BlockKernels {
   // Forward DCT of `n_blocks` horizontally adjacent 8x8 blocks of samples: block i starts at samples + 8*i, rows are
   // `stride` bytes apart. Subtracts 128, transforms. Output: coefficients scaled by 8, |c| <= 8200, block i at
@@ -44,6 +54,14 @@ struct BlockKernels {
   void (*idct_islow)(const int16_t* levels, const uint16_t* steps, const uint8_t* last, size_t n_blocks,
                      uint8_t* samples, ptrdiff_t stride);
 
+  // The same to fewer samples, each the mean of those it stands for: 4x4, 2x2 or 1 a block, block i at samples + 4*i,
+  // 2*i or i. Those of the IJG software's reduced transforms on every file that an encoder made. For any input
+  // whatever: x as in 1. above, all sums wrap modulo 2^32; 4x4: columns (v + 2^11) >> 12, rows (v + 2^18) >> 19; 2x2:
+  // columns (v + 2^12) >> 13, rows (v + 2^19) >> 20; 1x1: (x + 4) >> 3; clamped to -128..127, plus 128.
+  void (*idct_4x4)(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t stride);
+  void (*idct_2x2)(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t stride);
+  void (*idct_1x1)(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t stride);
+
   // Quantizes `n_blocks` blocks of coefficients (natural order, |c| < 2^14): level = sign(c) * ((|c| + bias) /
   // divisor). Output in *zigzag* order, 64 levels a block, and one mask a block: bit k set where the level at zigzag
   // position k is not zero. No alignment assumed. `levels` may not overlap `coefficients`.
@@ -60,5 +78,9 @@ void fill_block_scalar(BlockKernels& table);
 void fill_block_sse41(BlockKernels& table);
 void fill_block_avx2(BlockKernels& table);
 void fill_block_neon(BlockKernels& table);
+void fill_reduced_idct_scalar(BlockKernels& table);
+void fill_reduced_idct_sse41(BlockKernels& table);
+void fill_reduced_idct_avx2(BlockKernels& table);
+void fill_reduced_idct_neon(BlockKernels& table);
 
 }  // namespace pac

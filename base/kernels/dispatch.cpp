@@ -39,6 +39,7 @@ constexpr IsaEntry kIsas[kIsaCount] = {
 void fill(Kernels& table, Isa isa) {
   table.isa = isa;
   fill_block_scalar(table.block);
+  fill_reduced_idct_scalar(table.block);
   fill_motion_scalar(table.motion);
   fill_pixel_scalar(table.pixel);
   fill_tile_scalar(table.tile);
@@ -47,6 +48,7 @@ void fill(Kernels& table, Isa isa) {
 #ifdef PAC_HAVE_SSE41
   if (isa == Isa::sse41 || isa == Isa::avx2) {
     fill_block_sse41(table.block);
+    fill_reduced_idct_sse41(table.block);
     fill_motion_sse41(table.motion);
     fill_pixel_sse41(table.pixel);
     fill_tile_sse41(table.tile);
@@ -56,6 +58,7 @@ void fill(Kernels& table, Isa isa) {
 #ifdef PAC_HAVE_AVX2
   if (isa == Isa::avx2) {
     fill_block_avx2(table.block);
+    fill_reduced_idct_avx2(table.block);
     fill_motion_avx2(table.motion);
     fill_pixel_avx2(table.pixel);
     fill_tile_avx2(table.tile);
@@ -64,6 +67,7 @@ void fill(Kernels& table, Isa isa) {
 #ifdef PAC_HAVE_NEON
   if (isa == Isa::neon) {
     fill_block_neon(table.block);
+    fill_reduced_idct_neon(table.block);
     fill_motion_neon(table.motion);
     fill_pixel_neon(table.pixel);
     fill_tile_neon(table.tile);

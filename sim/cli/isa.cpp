@@ -27,6 +27,9 @@ struct Kernel {
 const Kernel kKernelList[] = {
     PAC_KERNEL(block, fdct_islow),
     PAC_KERNEL(block, idct_islow),
+    PAC_KERNEL(block, idct_4x4),
+    PAC_KERNEL(block, idct_2x2),
+    PAC_KERNEL(block, idct_1x1),
     PAC_KERNEL(block, quantize),
     PAC_KERNEL(block, fdct_quantize),
     PAC_KERNEL(motion, sad16),

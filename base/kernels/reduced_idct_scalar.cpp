@@ -1,23 +1,20 @@
-#include "jpeg/reduced_idct.h"
-
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
-namespace pac::jpeg {
+#include "base/kernels/block_kernels.h"
+
+namespace pac {
 namespace {
 
 // A sample of a 1-D transform of 8 is sum_u c_u x_u cos((2 i + 1) u pi / 16), with c_0 = 1 and c_u = sqrt(2) after the
 // scaling that the transforms here share with idct_islow. The mean of two neighbors replaces the cosine by
 //   cos(u pi / 16) cos((2 X + 1) u pi / 8),                  X = 0..3
 // and that of four by cos(u pi / 16) cos(u pi / 8) cos((2 X + 1) u pi / 4), X = 0, 1. Both are 0 for u = 4; the second
-// also for u = 2 and 6. Below: 13-bit fixed point of 2 c_u (4 c_u) times that, at X = 0 and, for four samples, X = 1;
-// the other half mirrors them, odd u with the other sign.
+// also for u = 2 and 6. The constants are 13-bit fixed point of 2 c_u (4 c_u) times that, at X = 0 and, for four
+// samples, X = 1; the other half mirrors them, odd u with the other sign.
+constexpr ReducedIdctFactors kFactors{};
 constexpr int kConstBits = 13, kPass1Bits = 2;
-constexpr int32_t kEven2 = 15137, kEven6 = -6270;  // 1.847759065, -0.765366865; X = 1: negated
-constexpr int32_t kOdd4[2][4] = {
-    {20995, 7373, -4926, -4176},   // 2.562915447, 0.899976223, -0.601344887, -0.509795579 for u = 1, 3, 5, 7
-    {8697, -17799, 11893, -1730},  // 1.061594337, -2.172734803, 1.451774981, -0.211164243
-};
-constexpr int32_t kOdd2[4] = {29692, -10426, 6967, -5906};  // 3.624509785, -1.272758580, 0.850430095, -0.720959822
 
 // Sums that wrap: only damaged files get there.
 int32_t product(int32_t a, int32_t b) {
@@ -40,9 +37,9 @@ int32_t odd_part(const int32_t (&weights)[4], const int32_t (&x)[8]) {
 // One dimension. shift: bits to drop.
 void transform4(const int32_t (&x)[8], int shift, int32_t (&out)[4]) {
   const int32_t mean = product(x[0], 1 << (kConstBits + 1));
-  const int32_t even = sum(product(kEven2, x[2]), product(kEven6, x[6]));
+  const int32_t even = sum(product(kFactors.even2, x[2]), product(kFactors.even6, x[6]));
   const int32_t outer = sum(mean, even), inner = difference(mean, even);
-  const int32_t odd_outer = odd_part(kOdd4[0], x), odd_inner = odd_part(kOdd4[1], x);
+  const int32_t odd_outer = odd_part(kFactors.odd4[0], x), odd_inner = odd_part(kFactors.odd4[1], x);
   out[0] = rounded(sum(outer, odd_outer), shift);
   out[1] = rounded(sum(inner, odd_inner), shift);
   out[2] = rounded(difference(inner, odd_inner), shift);
@@ -50,7 +47,7 @@ void transform4(const int32_t (&x)[8], int shift, int32_t (&out)[4]) {
 }
 
 void transform2(const int32_t (&x)[8], int shift, int32_t (&out)[2]) {
-  const int32_t mean = product(x[0], 1 << (kConstBits + 2)), odd = odd_part(kOdd2, x);
+  const int32_t mean = product(x[0], 1 << (kConstBits + 2)), odd = odd_part(kFactors.odd2, x);
   out[0] = rounded(sum(mean, odd), shift);
   out[1] = rounded(difference(mean, odd), shift);
 }
@@ -82,18 +79,24 @@ void block_of(const int16_t* levels, const uint16_t* steps, Transform&& transfor
   }
 }
 
-}  // namespace
-
-void idct_reduced(int size, const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples,
-                  ptrdiff_t stride) {
-  for (size_t i = 0; i < n_blocks; ++i, levels += 64, samples += size) {
-    if (size == 4)
-      block_of<4>(levels, steps, transform4, samples, stride);
-    else if (size == 2)
-      block_of<2>(levels, steps, transform2, samples, stride);
-    else
-      *samples = to_sample(rounded(dequantized(levels, steps, 0), 3));
-  }
+void idct_4x4(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t stride) {
+  for (size_t i = 0; i < n_blocks; ++i) block_of<4>(levels + 64 * i, steps, transform4, samples + 4 * i, stride);
 }
 
-}  // namespace pac::jpeg
+void idct_2x2(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t stride) {
+  for (size_t i = 0; i < n_blocks; ++i) block_of<2>(levels + 64 * i, steps, transform2, samples + 2 * i, stride);
+}
+
+void idct_1x1(const int16_t* levels, const uint16_t* steps, size_t n_blocks, uint8_t* samples, ptrdiff_t) {
+  for (size_t i = 0; i < n_blocks; ++i) samples[i] = to_sample(rounded(dequantized(levels + 64 * i, steps, 0), 3));
+}
+
+}  // namespace
+
+void fill_reduced_idct_scalar(BlockKernels& table) {
+  table.idct_4x4 = idct_4x4;
+  table.idct_2x2 = idct_2x2;
+  table.idct_1x1 = idct_1x1;
+}
+
+}  // namespace pac
