@@ -11,6 +11,7 @@
 namespace pac {
 namespace {
 
+using Bytes = __m256i;
 constexpr size_t kStep = 32;  // pixels
 
 __m256i load(const uint8_t* p) {
@@ -45,26 +46,6 @@ __m256i composite(__m256i l, __m256i d) {
   const __m256i zero_difference = _mm256_set1_epi8(127);
   const __m256i up = _mm256_subs_epu8(d, zero_difference), down = _mm256_subs_epu8(zero_difference, d);
   return _mm256_subs_epu8(_mm256_subs_epu8(_mm256_adds_epu8(_mm256_adds_epu8(l, up), up), down), down);
-}
-
-template <class Operation>
-void for_each_sample(const uint8_t* a, const uint8_t* b, uint8_t* out, size_t n, Operation operation) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) store(out + i, operation(load(a + i), load(b + i)));
-  if (i == n) return;
-  uint8_t last_a[kStep] = {}, last_b[kStep] = {}, last_out[kStep];
-  copy(last_a, a + i, n - i);
-  copy(last_b, b + i, n - i);
-  store(last_out, operation(load(last_a), load(last_b)));
-  copy(out + i, last_out, n - i);
-}
-
-void difference_row(const uint8_t* h, const uint8_t* l, uint8_t* d, size_t n) {
-  for_each_sample(h, l, d, n, [](__m256i a, __m256i b) { return difference(a, b); });
-}
-
-void composite_row(const uint8_t* l, const uint8_t* d, uint8_t* c, size_t n) {
-  for_each_sample(l, d, c, n, [](__m256i a, __m256i b) { return composite(a, b); });
 }
 
 // Both factors of a pmaddwd: `low` for the even 16-bit lanes, `high` for the odd ones.
@@ -120,18 +101,6 @@ void ycc_from_rgb_step(const uint8_t* rgb, uint8_t* y, uint8_t* cb, uint8_t* cr)
   store(y, pack(p0.y, p1.y, p2.y, p3.y));
   store(cb, pack(p0.cb, p1.cb, p2.cb, p3.cb));
   store(cr, pack(p0.cr, p1.cr, p2.cr, p3.cr));
-}
-
-void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uint8_t* cr) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) ycc_from_rgb_step(rgb + 3 * i, y + i, cb + i, cr + i);
-  if (i == n) return;
-  uint8_t last_rgb[3 * kStep] = {}, last[3][kStep];
-  copy(last_rgb, rgb + 3 * i, 3 * (n - i));
-  ycc_from_rgb_step(last_rgb, last[0], last[1], last[2]);
-  copy(y + i, last[0], n - i);
-  copy(cb + i, last[1], n - i);
-  copy(cr + i, last[2], n - i);
 }
 
 // Cb in the even and Cr in the odd 16-bit lanes: four pixels of each half.
@@ -262,18 +231,6 @@ void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, u
   store_rgb(kInterleave, r, g, b, rgb, rgb + 48);
 }
 
-void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) rgb_from_ycc_step(y + i, cb + i, cr + i, rgb + 3 * i);
-  if (i == n) return;
-  uint8_t last[3][kStep] = {}, last_rgb[3 * kStep];
-  copy(last[0], y + i, n - i);
-  copy(last[1], cb + i, n - i);
-  copy(last[2], cr + i, n - i);
-  rgb_from_ycc_step(last[0], last[1], last[2], last_rgb);
-  copy(rgb + 3 * i, last_rgb, 3 * (n - i));
-}
-
 // packus works in halves: (a0 b0 | a1 b1) becomes (a0 a1 | b0 b1).
 __m256i pack_in_order(__m256i a, __m256i b) {
   return _mm256_permute4x64_epi64(_mm256_packus_epi16(a, b), 0xD8);
@@ -289,33 +246,12 @@ void downsample_h2v1_step(const uint8_t* in, uint8_t* out) {
   store(out, pack_in_order(half(in), half(in + 32)));
 }
 
-void downsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) downsample_h2v1_step(in + 2 * i, out + i);
-  if (i == n) return;
-  uint8_t last_in[2 * kStep] = {}, last_out[kStep];
-  copy(last_in, in + 2 * i, 2 * (n - i));
-  downsample_h2v1_step(last_in, last_out);
-  copy(out + i, last_out, n - i);
-}
-
 void downsample_h2v2_step(const uint8_t* a, const uint8_t* b, uint8_t* out) {
   const __m256i bias = pair(1, 2);
   const auto quarter = [&](const uint8_t* p, const uint8_t* q) {
     return _mm256_srli_epi16(_mm256_add_epi16(_mm256_add_epi16(sums_of_two(p), sums_of_two(q)), bias), 2);
   };
   store(out, pack_in_order(quarter(a, b), quarter(a + 32, b + 32)));
-}
-
-void downsample_h2v2_row(const uint8_t* a, const uint8_t* b, size_t n, uint8_t* out) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) downsample_h2v2_step(a + 2 * i, b + 2 * i, out + i);
-  if (i == n) return;
-  uint8_t last_a[2 * kStep] = {}, last_b[2 * kStep] = {}, last_out[kStep];
-  copy(last_a, a + 2 * i, 2 * (n - i));
-  copy(last_b, b + 2 * i, 2 * (n - i));
-  downsample_h2v2_step(last_a, last_b, last_out);
-  copy(out + i, last_out, n - i);
 }
 
 // 3 a + b in 16-bit lanes, for the low and the high eight samples of each half.
@@ -345,34 +281,6 @@ void upsample_h2v1_step(const uint8_t* in, uint8_t* out) {
                     quarter(odd.high, two));
 }
 
-// A step's inputs with the sample before and the one after, copied where the row ends inside them.
-struct Surrounded {
-  uint8_t bytes[kStep + 2] = {};
-  Surrounded(const uint8_t* row, size_t n, size_t at, size_t count) {
-    bytes[0] = row[at == 0 ? 0 : at - 1];
-    if (count == kStep)
-      store(bytes + 1, load(row + at));
-    else
-      copy(bytes + 1, row + at, count);
-    bytes[count + 1] = row[at + count == n ? n - 1 : at + count];
-  }
-};
-
-// Steps that have both neighbors read the row itself, the first and last ones a surrounded copy.
-void upsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
-  for (size_t i = 0; i < n; i += kStep) {
-    if (i > 0 && i + kStep < n) {
-      upsample_h2v1_step(in + i, out + 2 * i);
-      continue;
-    }
-    const size_t count = n - i < kStep ? n - i : kStep;
-    const Surrounded edge(in, n, i, count);
-    uint8_t edge_out[2 * kStep];
-    upsample_h2v1_step(edge.bytes + 1, edge_out);
-    copy(out + 2 * i, edge_out, 2 * count);
-  }
-}
-
 void upsample_h2v2_step(const uint8_t* near, const uint8_t* far, uint8_t* out) {
   const Weighted here = three_to_one(load(near), load(far)), left = three_to_one(load(near - 1), load(far - 1)),
                  right = three_to_one(load(near + 1), load(far + 1));
@@ -385,19 +293,14 @@ void upsample_h2v2_step(const uint8_t* near, const uint8_t* far, uint8_t* out) {
                     sixteenth(here.low, right.low, 7), sixteenth(here.high, right.high, 7));
 }
 
-void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_t* out) {
-  for (size_t i = 0; i < n; i += kStep) {
-    if (i > 0 && i + kStep < n) {
-      upsample_h2v2_step(near + i, far + i, out + 2 * i);
-      continue;
-    }
-    const size_t count = n - i < kStep ? n - i : kStep;
-    const Surrounded edge_near(near, n, i, count), edge_far(far, n, i, count);
-    uint8_t edge_out[2 * kStep];
-    upsample_h2v2_step(edge_near.bytes + 1, edge_far.bytes + 1, edge_out);
-    copy(out + 2 * i, edge_out, 2 * count);
-  }
+Bytes weighted_quarter(Bytes a, Bytes b, int bias) {
+  const __m256i rounding = _mm256_set1_epi16(static_cast<int16_t>(bias));
+  const Weighted sum = three_to_one(a, b);
+  return _mm256_packus_epi16(_mm256_srli_epi16(_mm256_add_epi16(sum.low, rounding), 2),
+                             _mm256_srli_epi16(_mm256_add_epi16(sum.high, rounding), 2));
 }
+
+#include "base/kernels/pixel_rows_simd.inc"
 
 // Upsampled samples less 128 in 16-bit lanes: those at twice the place of the sample, and those behind them.
 struct EvenOdd {
@@ -474,15 +377,6 @@ void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t
   if (i >= n_chroma) return;
   // The last step may begin earlier and do pixels twice, which is cheaper than to do less than a step.
   rgb_from_ycc420_edge(y, chroma, n, n % 2 == 0 ? n_chroma - kStep : i, rgb);
-}
-
-void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {
-  const __m256i rounding = _mm256_set1_epi16(static_cast<int16_t>(bias));
-  for_each_sample(near, far, out, n, [&](__m256i a, __m256i b) {
-    const Weighted sum = three_to_one(a, b);
-    return _mm256_packus_epi16(_mm256_srli_epi16(_mm256_add_epi16(sum.low, rounding), 2),
-                               _mm256_srli_epi16(_mm256_add_epi16(sum.high, rounding), 2));
-  });
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 namespace pac {
 namespace {
 
+using Bytes = __m128i;
 constexpr size_t kStep = 16;  // pixels
 
 __m128i load(const uint8_t* p) {
@@ -35,26 +36,6 @@ __m128i composite(__m128i l, __m128i d) {
   const __m128i zero_difference = _mm_set1_epi8(127);
   const __m128i up = _mm_subs_epu8(d, zero_difference), down = _mm_subs_epu8(zero_difference, d);
   return _mm_subs_epu8(_mm_subs_epu8(_mm_adds_epu8(_mm_adds_epu8(l, up), up), down), down);
-}
-
-template <class Operation>
-void for_each_sample(const uint8_t* a, const uint8_t* b, uint8_t* out, size_t n, Operation operation) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) store(out + i, operation(load(a + i), load(b + i)));
-  if (i == n) return;
-  uint8_t last_a[kStep] = {}, last_b[kStep] = {}, last_out[kStep];
-  copy(last_a, a + i, n - i);
-  copy(last_b, b + i, n - i);
-  store(last_out, operation(load(last_a), load(last_b)));
-  copy(out + i, last_out, n - i);
-}
-
-void difference_row(const uint8_t* h, const uint8_t* l, uint8_t* d, size_t n) {
-  for_each_sample(h, l, d, n, [](__m128i a, __m128i b) { return difference(a, b); });
-}
-
-void composite_row(const uint8_t* l, const uint8_t* d, uint8_t* c, size_t n) {
-  for_each_sample(l, d, c, n, [](__m128i a, __m128i b) { return composite(a, b); });
 }
 
 // Both factors of a pmaddwd: `low` for the even 16-bit lanes, `high` for the odd ones.
@@ -100,18 +81,6 @@ void ycc_from_rgb_step(const uint8_t* rgb, uint8_t* y, uint8_t* cb, uint8_t* cr)
   store(y, pack(p0.y, p1.y, p2.y, p3.y));
   store(cb, pack(p0.cb, p1.cb, p2.cb, p3.cb));
   store(cr, pack(p0.cr, p1.cr, p2.cr, p3.cr));
-}
-
-void ycc_from_rgb_row(const uint8_t* rgb, size_t n, uint8_t* y, uint8_t* cb, uint8_t* cr) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) ycc_from_rgb_step(rgb + 3 * i, y + i, cb + i, cr + i);
-  if (i == n) return;
-  uint8_t last_rgb[3 * kStep] = {}, last[3][kStep];
-  copy(last_rgb, rgb + 3 * i, 3 * (n - i));
-  ycc_from_rgb_step(last_rgb, last[0], last[1], last[2]);
-  copy(y + i, last[0], n - i);
-  copy(cb + i, last[1], n - i);
-  copy(cr + i, last[2], n - i);
 }
 
 struct Rgb {
@@ -166,18 +135,6 @@ void rgb_from_ycc_step(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, u
   for (size_t k = 0; k < 3; ++k) store(rgb + 16 * k, interleave(kInterleave.mask[k], r, g, b));
 }
 
-void rgb_from_ycc_row(const uint8_t* y, const uint8_t* cb, const uint8_t* cr, size_t n, uint8_t* rgb) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) rgb_from_ycc_step(y + i, cb + i, cr + i, rgb + 3 * i);
-  if (i == n) return;
-  uint8_t last[3][kStep] = {}, last_rgb[3 * kStep];
-  copy(last[0], y + i, n - i);
-  copy(last[1], cb + i, n - i);
-  copy(last[2], cr + i, n - i);
-  rgb_from_ycc_step(last[0], last[1], last[2], last_rgb);
-  copy(rgb + 3 * i, last_rgb, 3 * (n - i));
-}
-
 __m128i sums_of_two(const uint8_t* p) {
   return _mm_maddubs_epi16(load(p), _mm_set1_epi8(1));
 }
@@ -188,33 +145,12 @@ void downsample_h2v1_step(const uint8_t* in, uint8_t* out) {
   store(out, _mm_packus_epi16(half(in), half(in + 16)));
 }
 
-void downsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) downsample_h2v1_step(in + 2 * i, out + i);
-  if (i == n) return;
-  uint8_t last_in[2 * kStep] = {}, last_out[kStep];
-  copy(last_in, in + 2 * i, 2 * (n - i));
-  downsample_h2v1_step(last_in, last_out);
-  copy(out + i, last_out, n - i);
-}
-
 void downsample_h2v2_step(const uint8_t* a, const uint8_t* b, uint8_t* out) {
   const __m128i bias = pair(1, 2);
   const auto quarter = [&](const uint8_t* p, const uint8_t* q) {
     return _mm_srli_epi16(_mm_add_epi16(_mm_add_epi16(sums_of_two(p), sums_of_two(q)), bias), 2);
   };
   store(out, _mm_packus_epi16(quarter(a, b), quarter(a + 16, b + 16)));
-}
-
-void downsample_h2v2_row(const uint8_t* a, const uint8_t* b, size_t n, uint8_t* out) {
-  size_t i = 0;
-  for (; i + kStep <= n; i += kStep) downsample_h2v2_step(a + 2 * i, b + 2 * i, out + i);
-  if (i == n) return;
-  uint8_t last_a[2 * kStep] = {}, last_b[2 * kStep] = {}, last_out[kStep];
-  copy(last_a, a + 2 * i, 2 * (n - i));
-  copy(last_b, b + 2 * i, 2 * (n - i));
-  downsample_h2v2_step(last_a, last_b, last_out);
-  copy(out + i, last_out, n - i);
 }
 
 // 3 a + b in 16-bit lanes, for the low and the high eight samples.
@@ -241,31 +177,6 @@ void upsample_h2v1_step(const uint8_t* in, uint8_t* out) {
                     quarter(odd.high, two));
 }
 
-// A step's inputs with the sample before and the one after, copied where the row ends inside them.
-struct Surrounded {
-  uint8_t bytes[kStep + 2] = {};
-  Surrounded(const uint8_t* row, size_t n, size_t at, size_t count) {
-    bytes[0] = row[at == 0 ? 0 : at - 1];
-    copy(bytes + 1, row + at, count);
-    bytes[count + 1] = row[at + count == n ? n - 1 : at + count];
-  }
-};
-
-// Steps that have both neighbors read the row itself, the first and last ones a surrounded copy.
-void upsample_h2v1_row(const uint8_t* in, size_t n, uint8_t* out) {
-  for (size_t i = 0; i < n; i += kStep) {
-    if (i > 0 && i + kStep < n) {
-      upsample_h2v1_step(in + i, out + 2 * i);
-      continue;
-    }
-    const size_t count = n - i < kStep ? n - i : kStep;
-    const Surrounded edge(in, n, i, count);
-    uint8_t edge_out[2 * kStep];
-    upsample_h2v1_step(edge.bytes + 1, edge_out);
-    copy(out + 2 * i, edge_out, 2 * count);
-  }
-}
-
 void upsample_h2v2_step(const uint8_t* near, const uint8_t* far, uint8_t* out) {
   const Weighted here = three_to_one(load(near), load(far)), left = three_to_one(load(near - 1), load(far - 1)),
                  right = three_to_one(load(near + 1), load(far + 1));
@@ -277,54 +188,15 @@ void upsample_h2v2_step(const uint8_t* near, const uint8_t* far, uint8_t* out) {
                     sixteenth(here.low, right.low, 7), sixteenth(here.high, right.high, 7));
 }
 
-void upsample_h2v2_row(const uint8_t* near, const uint8_t* far, size_t n, uint8_t* out) {
-  for (size_t i = 0; i < n; i += kStep) {
-    if (i > 0 && i + kStep < n) {
-      upsample_h2v2_step(near + i, far + i, out + 2 * i);
-      continue;
-    }
-    const size_t count = n - i < kStep ? n - i : kStep;
-    const Surrounded edge_near(near, n, i, count), edge_far(far, n, i, count);
-    uint8_t edge_out[2 * kStep];
-    upsample_h2v2_step(edge_near.bytes + 1, edge_far.bytes + 1, edge_out);
-    copy(out + 2 * i, edge_out, 2 * count);
-  }
-}
-
-void upsample_h1v2_row(const uint8_t* near, const uint8_t* far, int bias, size_t n, uint8_t* out) {
+Bytes weighted_quarter(Bytes a, Bytes b, int bias) {
   const __m128i rounding = _mm_set1_epi16(static_cast<int16_t>(bias));
-  for_each_sample(near, far, out, n, [&](__m128i a, __m128i b) {
-    const Weighted sum = three_to_one(a, b);
-    return _mm_packus_epi16(_mm_srli_epi16(_mm_add_epi16(sum.low, rounding), 2),
-                            _mm_srli_epi16(_mm_add_epi16(sum.high, rounding), 2));
-  });
+  const Weighted sum = three_to_one(a, b);
+  return _mm_packus_epi16(_mm_srli_epi16(_mm_add_epi16(sum.low, rounding), 2),
+                          _mm_srli_epi16(_mm_add_epi16(sum.high, rounding), 2));
 }
 
-// A piece of the row at a time, through buffers: chroma with a sample more on
-// both sides, whose outputs are not used.
-void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
-                         const uint8_t* cr_far, size_t n, uint8_t* rgb) {
-  constexpr size_t kPiece = 96;  // chroma samples
-  const size_t n_chroma = (n + 1) / 2;
-  for (size_t i = 0; i < n_chroma; i += kPiece) {
-    const size_t count = n_chroma - i < kPiece ? n_chroma - i : kPiece;
-    const auto upsample = [&](const uint8_t* near, const uint8_t* far, uint8_t* out) {
-      uint8_t wide[2][kPiece + 2];
-      const uint8_t* rows[2] = {near, far};
-      for (int r = 0; r < 2; ++r) {
-        wide[r][0] = rows[r][i == 0 ? 0 : i - 1];
-        copy(wide[r] + 1, rows[r] + i, count);
-        wide[r][count + 1] = rows[r][i + count == n_chroma ? n_chroma - 1 : i + count];
-      }
-      upsample_h2v2_row(wide[0], wide[1], count + 2, out);
-    };
-    uint8_t cb[2 * kPiece + 4], cr[2 * kPiece + 4];
-    upsample(cb_near, cb_far, cb);
-    upsample(cr_near, cr_far, cr);
-    rgb_from_ycc_row(y + 2 * i, cb + 2, cr + 2, n - 2 * i < 2 * count ? n - 2 * i : 2 * count, rgb + 6 * i);
-  }
-}
-
+#include "base/kernels/pixel_rows_simd.inc"
+#include "base/kernels/rgb_ycc420_simd.inc"
 #include "base/kernels/ycc420_simd.inc"
 
 }  // namespace
