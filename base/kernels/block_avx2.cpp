@@ -10,13 +10,10 @@
 namespace pac {
 namespace {
 
-// The scalar file's constants: round(c * 2^13).
-constexpr int k0_541 = 4433, k0_765 = 6270, k1_847 = 15137, k1_175 = 9633, k1_961 = 16069, k0_390 = 3196;
-constexpr int k0_298 = 2446, k2_053 = 16819, k3_072 = 25172, k1_501 = 12299, k0_899 = 7373, k2_562 = 20995;
-
 // One row of the first block in the low half, of the second in the high half.
+using Lanes = __m256i;
 struct Block {
-  __m256i v[8];
+  Lanes v[8];
 };
 
 __m128i load(const void* p) {
@@ -90,41 +87,27 @@ __m256i shift_right(const Wide& x) {
   return _mm256_packs_epi32(_mm256_srai_epi32(x.low, kShift), _mm256_srai_epi32(x.high, kShift));
 }
 
-// One dimension, forward. First pass: samples 0..255, shift 11, two bits of fraction stay; second: shift 15.
-template <bool kIsFirst>
-void fdct_1d(Block& x) {
-  constexpr int kShift = kIsFirst ? 11 : 15;
-  const __m256i sum07 = _mm256_add_epi16(x.v[0], x.v[7]), difference07 = _mm256_sub_epi16(x.v[0], x.v[7]);
-  const __m256i sum16 = _mm256_add_epi16(x.v[1], x.v[6]), difference16 = _mm256_sub_epi16(x.v[1], x.v[6]);
-  const __m256i sum25 = _mm256_add_epi16(x.v[2], x.v[5]), difference25 = _mm256_sub_epi16(x.v[2], x.v[5]);
-  const __m256i sum34 = _mm256_add_epi16(x.v[3], x.v[4]), difference34 = _mm256_sub_epi16(x.v[3], x.v[4]);
-
-  const __m256i even0 = _mm256_add_epi16(sum07, sum34), even3 = _mm256_sub_epi16(sum07, sum34);
-  const __m256i even1 = _mm256_add_epi16(sum16, sum25), even2 = _mm256_sub_epi16(sum16, sum25);
-  const __m256i dc = _mm256_add_epi16(even0, even1), c4 = _mm256_sub_epi16(even0, even1);
-  if constexpr (kIsFirst) {
-    // The level shift, 128 in each of 8 samples, cancels everywhere but here.
-    x.v[0] = _mm256_slli_epi16(_mm256_sub_epi16(dc, _mm256_set1_epi16(8 * 128)), 2);
-    x.v[4] = _mm256_slli_epi16(c4, 2);
-  } else {
-    // The sums reach -2^15 .. 2^15 - 2^8: adding 2 cannot overflow.
-    x.v[0] = _mm256_srai_epi16(_mm256_add_epi16(dc, _mm256_set1_epi16(2)), 2);
-    x.v[4] = _mm256_srai_epi16(_mm256_add_epi16(c4, _mm256_set1_epi16(2)), 2);
-  }
-  const Pairs even23 = interleave(even2, even3);
-  x.v[2] = shift_right<kShift>(plus_half<kShift>(multiply(even23, k0_541, k0_541 + k0_765)));
-  x.v[6] = shift_right<kShift>(plus_half<kShift>(multiply(even23, k0_541 - k1_847, k0_541)));
-
-  const Pairs z =
-      interleave(_mm256_add_epi16(difference34, difference16), _mm256_add_epi16(difference25, difference07));
-  const Wide odd3 = plus_half<kShift>(multiply(z, k1_175 - k1_961, k1_175));
-  const Wide odd4 = plus_half<kShift>(multiply(z, k1_175, k1_175 - k0_390));
-  const Pairs outer = interleave(difference34, difference07), inner = interleave(difference25, difference16);
-  x.v[7] = shift_right<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
-  x.v[1] = shift_right<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
-  x.v[5] = shift_right<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
-  x.v[3] = shift_right<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
+__m256i add(__m256i a, __m256i b) {
+  return _mm256_add_epi16(a, b);
 }
+__m256i subtract(__m256i a, __m256i b) {
+  return _mm256_sub_epi16(a, b);
+}
+__m256i four_times(__m256i v) {
+  return _mm256_slli_epi16(v, 2);
+}
+__m256i quarter(__m256i v) {
+  return _mm256_srai_epi16(_mm256_add_epi16(v, _mm256_set1_epi16(2)), 2);
+}
+__m256i level_shifted(__m256i dc) {
+  return _mm256_sub_epi16(dc, _mm256_set1_epi16(8 * 128));
+}
+Wide widen_by_13(__m256i v) {
+  const __m256i zero = _mm256_setzero_si256();
+  return {_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, v), 3), _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, v), 3)};
+}
+
+#include "base/kernels/block_transforms_simd.inc"
 
 __m128i load_8(const uint8_t* p) {
   return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(p));
@@ -167,33 +150,6 @@ void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16
     if (!is_pair) return;
     for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 64 + 8 * row, second_of(block.v[row]));
   }
-}
-
-// One dimension, inverse: columns round away 11 bits, rows 18. The 16-bit additions wrap, as the contract says.
-template <int kShift>
-void idct_1d(Block& x) {
-  const Pairs even26 = interleave(x.v[2], x.v[6]);
-  const Wide even2 = multiply(even26, k0_541 + k0_765, k0_541), even3 = multiply(even26, k0_541, k0_541 - k1_847);
-  const auto shift_left_13 = [](__m256i v) {
-    const __m256i zero = _mm256_setzero_si256();
-    return Wide{_mm256_srai_epi32(_mm256_unpacklo_epi16(zero, v), 3),
-                _mm256_srai_epi32(_mm256_unpackhi_epi16(zero, v), 3)};
-  };
-  const Wide even0 = plus_half<kShift>(shift_left_13(_mm256_add_epi16(x.v[0], x.v[4])));
-  const Wide even1 = plus_half<kShift>(shift_left_13(_mm256_sub_epi16(x.v[0], x.v[4])));
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
-
-  const Pairs z = interleave(_mm256_add_epi16(x.v[7], x.v[3]), _mm256_add_epi16(x.v[5], x.v[1]));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
-  const Pairs odd71 = interleave(x.v[7], x.v[1]), odd53 = interleave(x.v[5], x.v[3]);
-  const Wide b0 = multiply(odd71, k0_298 - k0_899, -k0_899) + odd3;
-  const Wide b1 = multiply(odd53, k2_053 - k2_562, -k2_562) + odd4;
-  const Wide b2 = multiply(odd53, -k2_562, k3_072 - k2_562) + odd3;
-  const Wide b3 = multiply(odd71, -k0_899, k1_501 - k0_899) + odd4;
-  x.v[0] = shift_right<kShift>(a0 + b3), x.v[7] = shift_right<kShift>(a0 - b3);
-  x.v[1] = shift_right<kShift>(a1 + b2), x.v[6] = shift_right<kShift>(a1 - b2);
-  x.v[2] = shift_right<kShift>(a2 + b1), x.v[5] = shift_right<kShift>(a2 - b1);
-  x.v[3] = shift_right<kShift>(a3 + b0), x.v[4] = shift_right<kShift>(a3 - b0);
 }
 
 // Only the DC level: every sample is the same. Returns it eight times.
@@ -324,41 +280,17 @@ void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* las
   }
 }
 
-// pshufb masks that bring to each vector of eight zigzag positions what it takes from each natural row; -1 gives zero.
-struct ZigzagMasks {
-  alignas(32) int8_t mask[8][8][32];  // [output vector][natural row], the same in both halves
-};
-constexpr ZigzagMasks make_zigzag_masks() {
-  ZigzagMasks masks{};
-  for (int out = 0; out < 8; ++out)
-    for (int row = 0; row < 8; ++row)
-      for (int lane = 0; lane < 16; ++lane) {
-        const int natural = kNaturalFromZigzag[8 * out + lane % 8];
-        const bool is_here = natural / 8 == row;
-        masks.mask[out][row][2 * lane] = static_cast<int8_t>(is_here ? natural % 8 * 2 : -1);
-        masks.mask[out][row][2 * lane + 1] = static_cast<int8_t>(is_here ? natural % 8 * 2 + 1 : -1);
-      }
-  return masks;
+__m256i zeros() {
+  return _mm256_setzero_si256();
 }
-constexpr ZigzagMasks kZigzag = make_zigzag_masks();
-
-__m256i load_aligned(const void* p) {
-  return _mm256_load_si256(static_cast<const __m256i*>(p));
+__m256i either(__m256i a, __m256i b) {
+  return _mm256_or_si256(a, b);
+}
+__m256i shuffle(__m256i v, const int8_t (&mask)[16]) {
+  return _mm256_shuffle_epi8(v, twice(load(mask)));
 }
 
-// Zigzag positions 8 kOut .. 8 kOut + 7, which lie in these natural rows only.
-template <int kOut, int... kRows>
-__m256i gather(const Block& natural) {
-  __m256i result = _mm256_setzero_si256();
-  ((result = _mm256_or_si256(result, _mm256_shuffle_epi8(natural.v[kRows], load_aligned(kZigzag.mask[kOut][kRows])))),
-   ...);
-  return result;
-}
-Block zigzag_from_natural(const Block& b) {
-  return {{gather<0, 0, 1, 2>(b), gather<1, 0, 1, 2, 3, 4>(b), gather<2, 1, 2, 3, 4, 5, 6>(b), gather<3, 0, 1, 2, 3>(b),
-           gather<4, 4, 5, 6, 7>(b), gather<5, 1, 2, 3, 4, 5, 6>(b), gather<6, 3, 4, 5, 6, 7>(b),
-           gather<7, 5, 6, 7>(b)}};
-}
+#include "base/kernels/block_zigzag_simd.inc"
 
 // A BlockQuantizer for both halves.
 struct PairQuantizer {

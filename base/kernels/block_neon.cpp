@@ -10,12 +10,9 @@
 namespace pac {
 namespace {
 
-// The scalar file's constants: round(c * 2^13).
-constexpr int k0_541 = 4433, k0_765 = 6270, k1_847 = 15137, k1_175 = 9633, k1_961 = 16069, k0_390 = 3196;
-constexpr int k0_298 = 2446, k2_053 = 16819, k3_072 = 25172, k1_501 = 12299, k0_899 = 7373, k2_562 = 20995;
-
+using Lanes = int16x8_t;
 struct Block {
-  int16x8_t v[8];
+  Lanes v[8];
 };
 
 Block transpose(const Block& b) {
@@ -50,42 +47,48 @@ Wide operator+(const Wide& a, const Wide& b) {
 Wide operator-(const Wide& a, const Wide& b) {
   return {vsubq_s32(a.low, b.low), vsubq_s32(a.high, b.high)};
 }
-// a * ca + b * cb.
-Wide multiply(int16x8_t a, int ca, int16x8_t b, int cb) {
-  const auto fa = static_cast<int16_t>(ca), fb = static_cast<int16_t>(cb);
-  return {vmlal_n_s16(vmull_n_s16(vget_low_s16(a), fa), vget_low_s16(b), fb),
-          vmlal_n_s16(vmull_n_s16(vget_high_s16(a), fa), vget_high_s16(b), fb)};
+struct Pairs {
+  int16x8_t a, b;
+};
+Pairs interleave(int16x8_t a, int16x8_t b) {
+  return {a, b};
 }
-// (x + 2^(s-1)) >> s, saturated to 16 bits.
+// a * ca + b * cb.
+Wide multiply(const Pairs& ab, int ca, int cb) {
+  const auto fa = static_cast<int16_t>(ca), fb = static_cast<int16_t>(cb);
+  return {vmlal_n_s16(vmull_n_s16(vget_low_s16(ab.a), fa), vget_low_s16(ab.b), fb),
+          vmlal_n_s16(vmull_n_s16(vget_high_s16(ab.a), fa), vget_high_s16(ab.b), fb)};
+}
+// (x + 2^(s-1)) >> s, saturated to 16 bits, at no cost for the rounding: so nothing is added before.
 template <int kShift>
-int16x8_t round_shift(const Wide& x) {
+const Wide& plus_half(const Wide& x) {
+  return x;
+}
+template <int kShift>
+int16x8_t shift_right(const Wide& x) {
   return vcombine_s16(vqmovn_s32(vrshrq_n_s32(x.low, kShift)), vqmovn_s32(vrshrq_n_s32(x.high, kShift)));
 }
 
-// One dimension, forward. First pass: shift 11, two bits of fraction stay; second: shift 15.
-template <bool kIsFirst>
-void fdct_1d(Block& x) {
-  constexpr int kShift = kIsFirst ? 11 : 15;
-  const int16x8_t sum07 = vaddq_s16(x.v[0], x.v[7]), difference07 = vsubq_s16(x.v[0], x.v[7]);
-  const int16x8_t sum16 = vaddq_s16(x.v[1], x.v[6]), difference16 = vsubq_s16(x.v[1], x.v[6]);
-  const int16x8_t sum25 = vaddq_s16(x.v[2], x.v[5]), difference25 = vsubq_s16(x.v[2], x.v[5]);
-  const int16x8_t sum34 = vaddq_s16(x.v[3], x.v[4]), difference34 = vsubq_s16(x.v[3], x.v[4]);
-
-  const int16x8_t even0 = vaddq_s16(sum07, sum34), even3 = vsubq_s16(sum07, sum34);
-  const int16x8_t even1 = vaddq_s16(sum16, sum25), even2 = vsubq_s16(sum16, sum25);
-  const auto scale = [](int16x8_t v) { return kIsFirst ? vshlq_n_s16(v, 2) : vrshrq_n_s16(v, 2); };
-  x.v[0] = scale(vaddq_s16(even0, even1));
-  x.v[4] = scale(vsubq_s16(even0, even1));
-  x.v[2] = round_shift<kShift>(multiply(even2, k0_541, even3, k0_541 + k0_765));
-  x.v[6] = round_shift<kShift>(multiply(even2, k0_541 - k1_847, even3, k0_541));
-
-  const int16x8_t z3 = vaddq_s16(difference34, difference16), z4 = vaddq_s16(difference25, difference07);
-  const Wide odd3 = multiply(z3, k1_175 - k1_961, z4, k1_175), odd4 = multiply(z3, k1_175, z4, k1_175 - k0_390);
-  x.v[7] = round_shift<kShift>(multiply(difference34, k0_298 - k0_899, difference07, -k0_899) + odd3);
-  x.v[1] = round_shift<kShift>(multiply(difference34, -k0_899, difference07, k1_501 - k0_899) + odd4);
-  x.v[5] = round_shift<kShift>(multiply(difference25, k2_053 - k2_562, difference16, -k2_562) + odd4);
-  x.v[3] = round_shift<kShift>(multiply(difference25, -k2_562, difference16, k3_072 - k2_562) + odd3);
+int16x8_t add(int16x8_t a, int16x8_t b) {
+  return vaddq_s16(a, b);
 }
+int16x8_t subtract(int16x8_t a, int16x8_t b) {
+  return vsubq_s16(a, b);
+}
+int16x8_t four_times(int16x8_t v) {
+  return vshlq_n_s16(v, 2);
+}
+int16x8_t quarter(int16x8_t v) {
+  return vrshrq_n_s16(v, 2);
+}
+int16x8_t level_shifted(int16x8_t dc) {
+  return dc;
+}
+Wide widen_by_13(int16x8_t v) {
+  return {vshll_n_s16(vget_low_s16(v), 13), vshll_n_s16(vget_high_s16(v), 13)};
+}
+
+#include "base/kernels/block_transforms_simd.inc"
 
 void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16_t* coefficients) {
   for (size_t i = 0; i < n_blocks; ++i) {
@@ -98,29 +101,6 @@ void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16
     fdct_1d<false>(block);
     for (int row = 0; row < 8; ++row) vst1q_s16(coefficients + 64 * i + 8 * row, block.v[row]);
   }
-}
-
-// One dimension, inverse: columns round away 11 bits, rows 18. The 16-bit additions wrap, as the contract says.
-template <int kShift>
-void idct_1d(Block& x) {
-  const Wide even2 = multiply(x.v[2], k0_541 + k0_765, x.v[6], k0_541);
-  const Wide even3 = multiply(x.v[2], k0_541, x.v[6], k0_541 - k1_847);
-  const auto shift_left_13 = [](int16x8_t v) {
-    return Wide{vshll_n_s16(vget_low_s16(v), 13), vshll_n_s16(vget_high_s16(v), 13)};
-  };
-  const Wide even0 = shift_left_13(vaddq_s16(x.v[0], x.v[4])), even1 = shift_left_13(vsubq_s16(x.v[0], x.v[4]));
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
-
-  const int16x8_t z3 = vaddq_s16(x.v[7], x.v[3]), z4 = vaddq_s16(x.v[5], x.v[1]);
-  const Wide odd3 = multiply(z3, k1_175 - k1_961, z4, k1_175), odd4 = multiply(z3, k1_175, z4, k1_175 - k0_390);
-  const Wide b0 = multiply(x.v[7], k0_298 - k0_899, x.v[1], -k0_899) + odd3;
-  const Wide b1 = multiply(x.v[5], k2_053 - k2_562, x.v[3], -k2_562) + odd4;
-  const Wide b2 = multiply(x.v[5], -k2_562, x.v[3], k3_072 - k2_562) + odd3;
-  const Wide b3 = multiply(x.v[7], -k0_899, x.v[1], k1_501 - k0_899) + odd4;
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
 }
 
 // Clamps to a signed byte and adds 128.

@@ -10,12 +10,9 @@
 namespace pac {
 namespace {
 
-// The scalar file's constants: round(c * 2^13).
-constexpr int k0_541 = 4433, k0_765 = 6270, k1_847 = 15137, k1_175 = 9633, k1_961 = 16069, k0_390 = 3196;
-constexpr int k0_298 = 2446, k2_053 = 16819, k3_072 = 25172, k1_501 = 12299, k0_899 = 7373, k2_562 = 20995;
-
+using Lanes = __m128i;
 struct Block {
-  __m128i v[8];
+  Lanes v[8];
 };
 
 __m128i load(const void* p) {
@@ -64,43 +61,37 @@ Wide multiply(const Pairs& ab, int ca, int cb) {
   return {_mm_madd_epi16(ab.low, factors), _mm_madd_epi16(ab.high, factors)};
 }
 
-// (x + 2^(s-1)) >> s, saturated to 16 bits.
 template <int kShift>
-__m128i round_shift(const Wide& x) {
+Wide plus_half(const Wide& x) {
   const __m128i half = _mm_set1_epi32(1 << (kShift - 1));
-  return _mm_packs_epi32(_mm_srai_epi32(_mm_add_epi32(x.low, half), kShift),
-                         _mm_srai_epi32(_mm_add_epi32(x.high, half), kShift));
+  return {_mm_add_epi32(x.low, half), _mm_add_epi32(x.high, half)};
+}
+template <int kShift>
+__m128i shift_right(const Wide& x) {
+  return _mm_packs_epi32(_mm_srai_epi32(x.low, kShift), _mm_srai_epi32(x.high, kShift));
 }
 
-// One dimension, forward. First pass: shift 11, two bits of fraction stay; second: shift 15.
-template <bool kIsFirst>
-void fdct_1d(Block& x) {
-  constexpr int kShift = kIsFirst ? 11 : 15;
-  const __m128i sum07 = _mm_add_epi16(x.v[0], x.v[7]), difference07 = _mm_sub_epi16(x.v[0], x.v[7]);
-  const __m128i sum16 = _mm_add_epi16(x.v[1], x.v[6]), difference16 = _mm_sub_epi16(x.v[1], x.v[6]);
-  const __m128i sum25 = _mm_add_epi16(x.v[2], x.v[5]), difference25 = _mm_sub_epi16(x.v[2], x.v[5]);
-  const __m128i sum34 = _mm_add_epi16(x.v[3], x.v[4]), difference34 = _mm_sub_epi16(x.v[3], x.v[4]);
-
-  const __m128i even0 = _mm_add_epi16(sum07, sum34), even3 = _mm_sub_epi16(sum07, sum34);
-  const __m128i even1 = _mm_add_epi16(sum16, sum25), even2 = _mm_sub_epi16(sum16, sum25);
-  const auto scale = [](__m128i v) {
-    // The second pass's sums reach -2^15 .. 2^15 - 2^8: adding 2 cannot overflow.
-    return kIsFirst ? _mm_slli_epi16(v, 2) : _mm_srai_epi16(_mm_add_epi16(v, _mm_set1_epi16(2)), 2);
-  };
-  x.v[0] = scale(_mm_add_epi16(even0, even1));
-  x.v[4] = scale(_mm_sub_epi16(even0, even1));
-  const Pairs even23 = interleave(even2, even3);
-  x.v[2] = round_shift<kShift>(multiply(even23, k0_541, k0_541 + k0_765));
-  x.v[6] = round_shift<kShift>(multiply(even23, k0_541 - k1_847, k0_541));
-
-  const Pairs z = interleave(_mm_add_epi16(difference34, difference16), _mm_add_epi16(difference25, difference07));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
-  const Pairs outer = interleave(difference34, difference07), inner = interleave(difference25, difference16);
-  x.v[7] = round_shift<kShift>(multiply(outer, k0_298 - k0_899, -k0_899) + odd3);
-  x.v[1] = round_shift<kShift>(multiply(outer, -k0_899, k1_501 - k0_899) + odd4);
-  x.v[5] = round_shift<kShift>(multiply(inner, k2_053 - k2_562, -k2_562) + odd4);
-  x.v[3] = round_shift<kShift>(multiply(inner, -k2_562, k3_072 - k2_562) + odd3);
+__m128i add(__m128i a, __m128i b) {
+  return _mm_add_epi16(a, b);
 }
+__m128i subtract(__m128i a, __m128i b) {
+  return _mm_sub_epi16(a, b);
+}
+__m128i four_times(__m128i v) {
+  return _mm_slli_epi16(v, 2);
+}
+__m128i quarter(__m128i v) {
+  return _mm_srai_epi16(_mm_add_epi16(v, _mm_set1_epi16(2)), 2);
+}
+__m128i level_shifted(__m128i dc) {
+  return dc;
+}
+Wide widen_by_13(__m128i v) {
+  const __m128i zero = _mm_setzero_si128();
+  return {_mm_srai_epi32(_mm_unpacklo_epi16(zero, v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zero, v), 3)};
+}
+
+#include "base/kernels/block_transforms_simd.inc"
 
 void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16_t* coefficients) {
   for (size_t i = 0; i < n_blocks; ++i) {
@@ -115,32 +106,6 @@ void fdct_islow(const uint8_t* samples, ptrdiff_t stride, size_t n_blocks, int16
     fdct_1d<false>(block);
     for (int row = 0; row < 8; ++row) store(coefficients + 64 * i + 8 * row, block.v[row]);
   }
-}
-
-// One dimension, inverse: columns round away 11 bits, rows 18. The 16-bit additions wrap, as the contract says.
-template <int kShift>
-void idct_1d(Block& x) {
-  const Pairs even26 = interleave(x.v[2], x.v[6]);
-  const Wide even2 = multiply(even26, k0_541 + k0_765, k0_541), even3 = multiply(even26, k0_541, k0_541 - k1_847);
-  const auto shift_left_13 = [](__m128i v) {
-    const __m128i zero = _mm_setzero_si128();
-    return Wide{_mm_srai_epi32(_mm_unpacklo_epi16(zero, v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zero, v), 3)};
-  };
-  const Wide even0 = shift_left_13(_mm_add_epi16(x.v[0], x.v[4]));
-  const Wide even1 = shift_left_13(_mm_sub_epi16(x.v[0], x.v[4]));
-  const Wide a0 = even0 + even2, a3 = even0 - even2, a1 = even1 + even3, a2 = even1 - even3;
-
-  const Pairs z = interleave(_mm_add_epi16(x.v[7], x.v[3]), _mm_add_epi16(x.v[5], x.v[1]));
-  const Wide odd3 = multiply(z, k1_175 - k1_961, k1_175), odd4 = multiply(z, k1_175, k1_175 - k0_390);
-  const Pairs odd71 = interleave(x.v[7], x.v[1]), odd53 = interleave(x.v[5], x.v[3]);
-  const Wide b0 = multiply(odd71, k0_298 - k0_899, -k0_899) + odd3;
-  const Wide b1 = multiply(odd53, k2_053 - k2_562, -k2_562) + odd4;
-  const Wide b2 = multiply(odd53, -k2_562, k3_072 - k2_562) + odd3;
-  const Wide b3 = multiply(odd71, -k0_899, k1_501 - k0_899) + odd4;
-  x.v[0] = round_shift<kShift>(a0 + b3), x.v[7] = round_shift<kShift>(a0 - b3);
-  x.v[1] = round_shift<kShift>(a1 + b2), x.v[6] = round_shift<kShift>(a1 - b2);
-  x.v[2] = round_shift<kShift>(a2 + b1), x.v[5] = round_shift<kShift>(a2 - b1);
-  x.v[3] = round_shift<kShift>(a3 + b0), x.v[4] = round_shift<kShift>(a3 - b0);
 }
 
 // Only the DC level: every sample is the same.
@@ -179,36 +144,17 @@ void idct_islow(const int16_t* levels, const uint16_t* steps, const uint8_t* las
   }
 }
 
-// pshufb masks that bring to each vector of eight zigzag positions what it takes from each natural row; -1 gives zero.
-struct ZigzagMasks {
-  alignas(16) int8_t mask[8][8][16];  // [output vector][natural row]
-};
-constexpr ZigzagMasks make_zigzag_masks() {
-  ZigzagMasks masks{};
-  for (int out = 0; out < 8; ++out)
-    for (int row = 0; row < 8; ++row)
-      for (int lane = 0; lane < 8; ++lane) {
-        const int natural = kNaturalFromZigzag[8 * out + lane];
-        const bool is_here = natural / 8 == row;
-        masks.mask[out][row][2 * lane] = static_cast<int8_t>(is_here ? natural % 8 * 2 : -1);
-        masks.mask[out][row][2 * lane + 1] = static_cast<int8_t>(is_here ? natural % 8 * 2 + 1 : -1);
-      }
-  return masks;
+__m128i zeros() {
+  return _mm_setzero_si128();
 }
-constexpr ZigzagMasks kZigzag = make_zigzag_masks();
+__m128i either(__m128i a, __m128i b) {
+  return _mm_or_si128(a, b);
+}
+__m128i shuffle(__m128i v, const int8_t (&mask)[16]) {
+  return _mm_shuffle_epi8(v, load(mask));
+}
 
-// Zigzag positions 8 kOut .. 8 kOut + 7, which lie in these natural rows only.
-template <int kOut, int... kRows>
-__m128i gather(const Block& natural) {
-  __m128i result = _mm_setzero_si128();
-  ((result = _mm_or_si128(result, _mm_shuffle_epi8(natural.v[kRows], load(kZigzag.mask[kOut][kRows])))), ...);
-  return result;
-}
-Block zigzag_from_natural(const Block& b) {
-  return {{gather<0, 0, 1, 2>(b), gather<1, 0, 1, 2, 3, 4>(b), gather<2, 1, 2, 3, 4, 5, 6>(b), gather<3, 0, 1, 2, 3>(b),
-           gather<4, 4, 5, 6, 7>(b), gather<5, 1, 2, 3, 4, 5, 6>(b), gather<6, 3, 4, 5, 6, 7>(b),
-           gather<7, 5, 6, 7>(b)}};
-}
+#include "base/kernels/block_zigzag_simd.inc"
 
 void quantize(const int16_t* coefficients, const BlockQuantizer& quantizer, size_t n_blocks, int16_t* levels,
               uint64_t* nonzero) {
