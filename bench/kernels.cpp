@@ -129,6 +129,24 @@ void bench_fdct(benchmark::State& state, const Kernels& table, size_t bytes) {
   count_blocks(state, n_blocks, 192);
 }
 
+// Blocks to 4x4 or 2x2 samples.
+template <int kSide>
+void bench_reduced_idct(benchmark::State& state, const Kernels& table, size_t bytes) {
+  const size_t n_blocks = bytes / 192;
+  std::vector<int16_t> levels(64 * n_blocks);
+  for (size_t i = 0; i < levels.size(); ++i) levels[i] = static_cast<int16_t>(i * 7 % 13 - 6);
+  const std::vector<uint16_t> steps(64, 17);
+  AlignedBytes samples(64 * n_blocks);
+  const auto kernel = kSide == 4 ? table.block.idct_4x4 : table.block.idct_2x2;
+  for (auto _ : state) {
+    for_each_row_of_blocks(n_blocks, [&](size_t at, size_t n) {
+      kernel(&levels[64 * at], steps.data(), n, samples.data() + 64 * at, static_cast<ptrdiff_t>(kSide * n));
+    });
+    benchmark::ClobberMemory();
+  }
+  count_blocks(state, n_blocks, 192);
+}
+
 // kLast: zigzag position of the last level of each block.
 template <uint8_t kLast>
 void bench_idct(benchmark::State& state, const Kernels& table, size_t bytes) {
@@ -177,6 +195,8 @@ void bench_quantize(benchmark::State& state, const Kernels& table, size_t bytes)
   register_for_each("idct8x8_dc", bench_idct<0>);
   register_for_each("idct8x8_last9", bench_idct<9>);
   register_for_each("idct8x8", bench_idct<63>);
+  register_for_each("idct4x4", bench_reduced_idct<4>);
+  register_for_each("idct2x2", bench_reduced_idct<2>);
   register_for_each("quantize8x8", bench_quantize);
   return true;
 }();
