@@ -34,6 +34,11 @@ TEST_CASE("distances: every instruction set gives the scalar number") {
         scalar.motion.sad16_x4(s, step, four, step, expected);
         table.motion.sad16_x4(s, step, four, step, actual);
         for (int i = 0; i < 4; ++i) CHECK(actual[i] == expected[i]);
+        scalar.motion.sad16_quarters(s, step, r, step, expected);
+        table.motion.sad16_quarters(s, step, r, step, actual);
+        for (int i = 0; i < 4; ++i) CHECK(actual[i] == expected[i]);
+        CHECK(actual[0] + actual[1] + actual[2] + actual[3] == scalar.motion.sad16(s, step, r, step));
+        CHECK(table.motion.sad8(s, step, r, step) == expected[0]);
         uint32_t sums[4];
         scalar.motion.moments16(s, step, &sums[0], &sums[1]);
         table.motion.moments16(s, step, &sums[2], &sums[3]);
@@ -80,6 +85,16 @@ TEST_CASE("fdct_residual: every instruction set gives the scalar bits") {
       check.compare<int16_t>(64 * n, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
         table.motion.fdct_residual(s, step, p, step, n, out);
       });
+      for (const int threshold : {1, 48, 600, 16384}) {
+        uint32_t expected = 0;
+        bool is_first = true;  // the scalar table comes first
+        check.compare<int16_t>(64 * n, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
+          const uint32_t reaching = table.motion.fdct_residual_reaching(s, step, p, step, n, threshold, out);
+          if (is_first) expected = reaching;
+          is_first = false;
+          CHECK(reaching == expected);
+        });
+      }
     }
 }
 

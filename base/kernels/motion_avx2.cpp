@@ -100,6 +100,10 @@ PAC_INLINE Wide widen_by_13(Lanes v) {
           _mm256_srai_epi32(_mm256_unpackhi_epi16(zeros(), v), 3)};
 }
 
+PAC_INLINE Lanes larger(Lanes a, Lanes b) {
+  return _mm256_max_epi16(a, _mm256_abs_epi16(b));
+}
+
 #include "base/kernels/motion_transforms_simd.inc"
 
 __m256i join(__m128i first, __m128i second) {
@@ -110,7 +114,7 @@ __m256i difference_row(const uint8_t* source, const uint8_t* prediction) {
   return _mm256_sub_epi16(_mm256_cvtepu8_epi16(load(source)), _mm256_cvtepu8_epi16(load(prediction)));
 }
 __m256i difference_row_8(const uint8_t* source, const uint8_t* prediction) {
-  return _mm256_castsi128_si256(_mm_sub_epi16(widen(load_8(source)), widen(load_8(prediction))));
+  return join(_mm_sub_epi16(widen(load_8(source)), widen(load_8(prediction))), _mm_setzero_si128());
 }
 
 uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
@@ -132,22 +136,43 @@ uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* p
   return total;
 }
 
+// Blocks i and i + 1, or i alone.
+PAC_INLINE Block transformed_errors(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                    ptrdiff_t prediction_stride, bool is_pair, int16_t* coefficients) {
+  Block block;
+  for (int y = 0; y < 8; ++y) {
+    const uint8_t* s = source + y * source_stride;
+    const uint8_t* p = prediction + y * prediction_stride;
+    block.v[y] = is_pair ? difference_row(s, p) : difference_row_8(s, p);
+  }
+  fdct_2d(block);
+  for (int y = 0; y < 8; ++y) store(coefficients + 8 * y, _mm256_castsi256_si128(block.v[y]));
+  if (is_pair)
+    for (int y = 0; y < 8; ++y) store(coefficients + 64 + 8 * y, _mm256_extracti128_si256(block.v[y], 1));
+  return block;
+}
+
 void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
                    ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients) {
+  for (size_t i = 0; i < n_blocks; i += 2)
+    transformed_errors(source + 8 * i, source_stride, prediction + 8 * i, prediction_stride, i + 1 < n_blocks,
+                       coefficients + 64 * i);
+}
+
+// The high half of a single block is transformed zeros: it never reaches anything.
+uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+  const __m256i below = _mm256_set1_epi16(static_cast<int16_t>(threshold - 1));
+  uint32_t reaching = 0;
   for (size_t i = 0; i < n_blocks; i += 2) {
-    const bool is_pair = i + 1 < n_blocks;
-    Block block;
-    for (int y = 0; y < 8; ++y) {
-      const uint8_t* s = source + y * source_stride + 8 * i;
-      const uint8_t* p = prediction + y * prediction_stride + 8 * i;
-      block.v[y] = is_pair ? difference_row(s, p) : difference_row_8(s, p);
-    }
-    fdct_2d(block);
-    int16_t* out = coefficients + 64 * i;
-    for (int y = 0; y < 8; ++y) store(out + 8 * y, _mm256_castsi256_si128(block.v[y]));
-    if (!is_pair) return;
-    for (int y = 0; y < 8; ++y) store(out + 64 + 8 * y, _mm256_extracti128_si256(block.v[y], 1));
+    const Block block = transformed_errors(source + 8 * i, source_stride, prediction + 8 * i, prediction_stride,
+                                           i + 1 < n_blocks, coefficients + 64 * i);
+    const auto above =
+        static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpgt_epi16(largest_magnitudes(block), below)));
+    const uint32_t pair = ((above & 0xFFFF) != 0 ? 1u : 0u) | (above >> 16 != 0 ? 2u : 0u);
+    reaching |= pair << i;
   }
+  return reaching;
 }
 
 template <bool kAdd>
@@ -176,6 +201,7 @@ void fill_motion_avx2(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
   table.fdct_residual = fdct_residual;
+  table.fdct_residual_reaching = fdct_residual_reaching;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }

@@ -23,6 +23,12 @@ struct MotionKernels {
   // The same against four references of one stride.
   void (*sad16_x4)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* const* references,
                    ptrdiff_t reference_stride, uint32_t* sads);
+  // The same over each 8x8 block of the 16x16 samples, in raster order.
+  void (*sad16_quarters)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                         ptrdiff_t reference_stride, uint32_t* sads);
+  // Sum of |source - reference| over 8x8 samples.
+  uint32_t (*sad8)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                   ptrdiff_t reference_stride);
   // Against the prediction of kind h + 2 * v.
   uint32_t (*sad16_half[kHalfPelKinds])(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                                         ptrdiff_t reference_stride);
@@ -49,6 +55,12 @@ struct MotionKernels {
   // coefficients + 64 * i.
   void (*fdct_residual)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
                         ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients);
+
+  // fdct_residual() of up to 32 blocks that also tells which of them have a coefficient with |c| >= threshold
+  // (1..32767): bit i for block i.
+  uint32_t (*fdct_residual_reaching)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                     ptrdiff_t prediction_stride, size_t n_blocks, int threshold,
+                                     int16_t* coefficients);
 
   // Inverse DCT of `n_blocks` blocks of coefficients (natural order, -2048..2047, block i at coefficients + 64 * i),
   // added to the samples at samples[i] (rows strides[i] apart) and clamped to 0..255. Three bits of fraction stay

@@ -92,6 +92,20 @@ void sad16_x4(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* con
   for (int i = 0; i < 4; ++i) sads[i] = sad16_half<0>(source, source_stride, references[i], reference_stride);
 }
 
+uint32_t sad8(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference, ptrdiff_t reference_stride) {
+  uint16x8_t sum = vdupq_n_u16(0);
+  for (int y = 0; y < 8; ++y)
+    sum = vabal_u8(sum, vld1_u8(source + y * source_stride), vld1_u8(reference + y * reference_stride));
+  return vaddlvq_u16(sum);
+}
+
+void sad16_quarters(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                    ptrdiff_t reference_stride, uint32_t* sads) {
+  for (int i = 0; i < 4; ++i)
+    sads[i] = sad8(source + (i >> 1) * 8 * source_stride + (i & 1) * 8, source_stride,
+                   reference + (i >> 1) * 8 * reference_stride + (i & 1) * 8, reference_stride);
+}
+
 uint32_t sse(const uint8_t* a, ptrdiff_t a_stride, const uint8_t* b, ptrdiff_t b_stride, int width, int height) {
   uint32x4_t sum = vdupq_n_u32(0);
   for (int y = 0; y < height; ++y)
@@ -211,6 +225,10 @@ PAC_INLINE Block transpose(const Block& b) {
            high_halves(column2, lower2), high_halves(column3, lower3)}};
 }
 
+PAC_INLINE Lanes larger(Lanes a, Lanes b) {
+  return vmaxq_s16(a, vabsq_s16(b));
+}
+
 #include "base/kernels/motion_transforms_simd.inc"
 
 PAC_INLINE Lanes difference_row(const uint8_t* source, const uint8_t* prediction) {
@@ -246,6 +264,20 @@ void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t
   }
 }
 
+uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+  uint32_t reaching = 0;
+  for (size_t i = 0; i < n_blocks; ++i) {
+    Block block;
+    for (int y = 0; y < 8; ++y)
+      block.v[y] = difference_row(source + y * source_stride + 8 * i, prediction + y * prediction_stride + 8 * i);
+    fdct_2d(block);
+    for (size_t y = 0; y < 8; ++y) vst1q_s16(coefficients + 64 * i + 8 * y, block.v[y]);
+    reaching |= (vmaxvq_s16(largest_magnitudes(block)) >= threshold ? uint32_t{1} : 0) << i;
+  }
+  return reaching;
+}
+
 template <bool kAdd>
 void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples, const ptrdiff_t* strides) {
   for (size_t i = 0; i < n_blocks; ++i) {
@@ -274,6 +306,8 @@ void idct_dc_add(int dc, uint8_t* samples, ptrdiff_t stride) {
 void fill_motion_neon(MotionKernels& table) {
   table.sad16 = sad16_half<0>;
   table.sad16_x4 = sad16_x4;
+  table.sad16_quarters = sad16_quarters;
+  table.sad8 = sad8;
   table.sad16_half[0] = sad16_half<0>, table.sad16_half[1] = sad16_half<1>;
   table.sad16_half[2] = sad16_half<2>, table.sad16_half[3] = sad16_half<3>;
   table.satd16 = satd16;
@@ -285,6 +319,7 @@ void fill_motion_neon(MotionKernels& table) {
   table.predict8[2] = predict<8, 2>, table.predict8[3] = predict<8, 3>;
   table.average = average;
   table.fdct_residual = fdct_residual;
+  table.fdct_residual_reaching = fdct_residual_reaching;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
   table.idct_dc_add = idct_dc_add;

@@ -65,6 +65,21 @@ void sad16_x4(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* con
   for (int i = 0; i < 4; ++i) sads[i] = sad16_half<0>(source, source_stride, references[i], reference_stride);
 }
 
+uint32_t sad8(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference, ptrdiff_t reference_stride) {
+  uint32_t sum = 0;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      sum += static_cast<uint32_t>(magnitude(source[y * source_stride + x] - reference[y * reference_stride + x]));
+  return sum;
+}
+
+void sad16_quarters(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                    ptrdiff_t reference_stride, uint32_t* sads) {
+  for (int i = 0; i < 4; ++i)
+    sads[i] = sad8(source + (i >> 1) * 8 * source_stride + (i & 1) * 8, source_stride,
+                   reference + (i >> 1) * 8 * reference_stride + (i & 1) * 8, reference_stride);
+}
+
 void hadamard_1d(int* x, int step) {
   for (int half = 1; half < 8; half *= 2)
     for (int i = 0; i < 8; i += 2 * half)
@@ -175,6 +190,15 @@ void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t
   }
 }
 
+uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+  fdct_residual(source, source_stride, prediction, prediction_stride, n_blocks, coefficients);
+  uint32_t reaching = 0;
+  for (size_t i = 0; i < 64 * n_blocks; ++i)
+    if (magnitude(coefficients[i]) >= threshold) reaching |= uint32_t{1} << (i / 64);
+  return reaching;
+}
+
 // One dimension, inverse, not yet rounded: 2^13 * sqrt(8) times the samples.
 void idct_1d(int (&x)[8]) {
   const int even2 = x[2] * (k0_541 + k0_765) + x[6] * k0_541;
@@ -235,6 +259,8 @@ void idct_dc_add(int dc, uint8_t* samples, ptrdiff_t stride) {
 void fill_motion_scalar(MotionKernels& table) {
   table.sad16 = sad16_half<0>;
   table.sad16_x4 = sad16_x4;
+  table.sad16_quarters = sad16_quarters;
+  table.sad8 = sad8;
   table.sad16_half[0] = sad16_half<0>, table.sad16_half[1] = sad16_half<1>;
   table.sad16_half[2] = sad16_half<2>, table.sad16_half[3] = sad16_half<3>;
   table.satd16 = satd16;
@@ -246,6 +272,7 @@ void fill_motion_scalar(MotionKernels& table) {
   table.predict8[2] = predict<8, 2>, table.predict8[3] = predict<8, 3>;
   table.average = average;
   table.fdct_residual = fdct_residual;
+  table.fdct_residual_reaching = fdct_residual_reaching;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
   table.idct_dc_add = idct_dc_add;

@@ -97,6 +97,10 @@ PAC_INLINE Wide widen_by_13(Lanes v) {
   return {_mm_srai_epi32(_mm_unpacklo_epi16(zeros(), v), 3), _mm_srai_epi32(_mm_unpackhi_epi16(zeros(), v), 3)};
 }
 
+PAC_INLINE Lanes larger(Lanes a, Lanes b) {
+  return _mm_max_epi16(a, _mm_abs_epi16(b));
+}
+
 #include "base/kernels/motion_transforms_simd.inc"
 
 __m128i difference_row(const uint8_t* source, const uint8_t* prediction) {
@@ -132,6 +136,22 @@ void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t
   }
 }
 
+uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
+                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+  const __m128i below = _mm_set1_epi16(static_cast<int16_t>(threshold - 1));
+  uint32_t reaching = 0;
+  for (size_t i = 0; i < n_blocks; ++i) {
+    Block block;
+    for (int y = 0; y < 8; ++y)
+      block.v[y] = difference_row(source + y * source_stride + 8 * i, prediction + y * prediction_stride + 8 * i);
+    fdct_2d(block);
+    for (int y = 0; y < 8; ++y) store(coefficients + 64 * i + 8 * static_cast<size_t>(y), block.v[y]);
+    const int above = _mm_movemask_epi8(_mm_cmpgt_epi16(largest_magnitudes(block), below));
+    reaching |= (above != 0 ? uint32_t{1} : 0) << i;
+  }
+  return reaching;
+}
+
 template <bool kAdd>
 void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples, const ptrdiff_t* strides) {
   for (size_t i = 0; i < n_blocks; ++i) {
@@ -152,6 +172,7 @@ void fill_motion_sse41(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
   table.fdct_residual = fdct_residual;
+  table.fdct_residual_reaching = fdct_residual_reaching;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }
