@@ -53,7 +53,9 @@ class FastBitWriter {
   }
   void store(uint64_t bits) {
     if (size_ + 8 > bytes_.size()) bytes_.resize(2 * bytes_.size() + 4096);
-    for (int i = 0; i < 8; ++i) bytes_[size_ + static_cast<size_t>(i)] = static_cast<uint8_t>(bits >> (56 - 8 * i));
+    uint8_t bytes[8];  // of their own, so that they become one store
+    for (int i = 0; i < 8; ++i) bytes[i] = static_cast<uint8_t>(bits >> (56 - 8 * i));
+    std::memcpy(bytes_.data() + size_, bytes, 8);
     size_ += 8;
   }
 

@@ -5,19 +5,17 @@
 #include <cstdlib>
 #include <utility>
 
-#include "mpeg1/motion_search.h"
+#include "mpeg1/fast_coder.h"
+#include "mpeg1/macroblock_place.h"
 #include "mpeg1/trellis.h"
 #include "mpeg1/vlc_tables.h"
 
 namespace pac::mpeg1 {
 namespace {
 
-// Bits of macroblock_type in P pictures [table B.2b], address increment of 1 included.
-constexpr int kBitsMotionCoded = 2, kBitsCoded = 3, kBitsMotion = 4, kBitsIntra = 6, kBitsSkipped = 1;
-
-class BandCoder {
+class BandCoder : private MacroblockPlace {
  public:
-  BandCoder(const PictureTask& task, Band& band) : task_(task), band_(band), motion_(task.residual.kernels->motion) {}
+  BandCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band), fast_(task, band) {}
 
   void code() {
     band_.tokens.clear();
@@ -26,11 +24,6 @@ class BandCoder {
   }
 
  private:
-  int address() const { return row_ * task_.columns + column_; }
-  int quantizer() const { return task_.quantizers[address()]; }
-  int64_t lambda() const { return task_.residual.lambda[quantizer()]; }
-  const uint8_t* source() const { return task_.source.at(0, column_, row_); }
-
   void code_macroblock() {
     task_.macroblocks[address()] = {};
     for (Attempt& attempt : attempts_) attempt.quantizer = static_cast<uint8_t>(quantizer());
@@ -45,61 +38,14 @@ class BandCoder {
     }
   }
 
-  // ---- Vectors -----------------------------------------------------------------------------------------------------
-
-  MotionVector vector_at(int column, int row) const { return task_.macroblocks[row * task_.columns + column].vector; }
-
-  // What the stream predicts the vector from, as far as the band knows.
-  MotionVector predicted_vector() const { return column_ > 0 ? vector_at(column_ - 1, row_) : MotionVector{}; }
-
-  int collect_candidates(MotionVector* candidates, int capacity) const {
-    int n = 0;
-    const auto add = [&](MotionVector v) {
-      if (n < capacity) candidates[n++] = v;
-    };
-    for (int i = 0; i < std::min(task_.candidates_per_macroblock, 8); ++i)
-      add(task_.candidates[address() * task_.candidates_per_macroblock + i]);
-    if (column_ > 0) add(vector_at(column_ - 1, row_));
-    if (row_ > band_.first_row) {
-      add(vector_at(column_, row_ - 1));
-      if (column_ + 1 < task_.columns) add(vector_at(column_ + 1, row_ - 1));
-    }
-    if (task_.last_vectors != nullptr) {
-      const MotionVector* last = task_.last_vectors + address();
-      add(last[0]);
-      if (column_ + 1 < task_.columns) add(last[1]);
-      if (row_ + 1 < task_.rows) add(last[task_.columns]);
-    }
-    return n;
-  }
-
   SearchResult search() const {
-    MotionVector candidates[16];
-    SearchInput input;
-    input.kernels = &motion_;
-    input.source = source();
-    input.source_stride = task_.source.stride[0];
-    input.reference = task_.reference;
-    input.column = column_;
-    input.row = row_;
-    input.range = vector_range(task_.reference, column_, row_, task_.f_code);
-    input.predicted = predicted_vector();
-    input.candidates = candidates;
-    input.n_candidates = collect_candidates(candidates, 16);
-    input.lambda_q4 = 16u * static_cast<uint32_t>(quantizer());
-    input.bits_of_difference = task_.bits_of_difference;
+    MotionVector candidates[kMaxCandidates];
+    const int n = collect_candidates(candidates);
     SearchOptions options;
-    options.good_sad = task_.effort == Effort::fast ? 32u * static_cast<uint32_t>(quantizer()) : 0;
-    options.max_steps = task_.effort == Effort::fast ? 8 : 16;
-    options.hadamard = task_.effort != Effort::fast;
+    options.max_steps = 16;
+    options.hadamard = true;
     options.wide = task_.effort == Effort::best;
-    return search_motion(input, options);
-  }
-
-  int vector_bits(MotionVector v) const {
-    const MotionVector p = predicted_vector();
-    return task_.bits_of_difference[std::min(std::abs(v.x_halfpel - p.x_halfpel), kMaxDifference)] +
-           task_.bits_of_difference[std::min(std::abs(v.y_halfpel - p.y_halfpel), kMaxDifference)];
+    return search_motion(search_input(candidates, n), options);
   }
 
   void predict(MotionVector vector, Attempt& attempt) const {
@@ -107,22 +53,25 @@ class BandCoder {
     predict_macroblock(motion_, task_.reference, column_, row_, vector, attempt.prediction.planes(), 0, 0);
   }
 
-  // ---- Fast: by sums of differences --------------------------------------------------------------------------------
-
-  // error: of the best prediction, squared, about; against the macroblock's own variation, with `bias` in thousandths.
-  bool may_be_intra(uint64_t error, uint64_t bias) const {
-    uint32_t sum = 0, sum_of_squares = 0;
-    motion_.moments16(source(), task_.source.stride[0], &sum, &sum_of_squares);
-    const uint64_t variation = sum_of_squares - static_cast<uint64_t>(sum) * sum / 256;
-    return error * bias > (variation + 256 * 16) * 1000;
+  void code_fast() {
+    const FastCoder::Outcome outcome = fast_.code(column_, row_);
+    if (outcome == FastCoder::Outcome::done) return;
+    if (outcome == FastCoder::Outcome::intra) {
+      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
+    } else {
+      predict(fast_.vector(), attempts_[0]);
+      attempt_inter(task_.residual, task_.source, column_, row_, false, attempts_[0]);
+    }
+    take(attempts_[0]);
   }
 
+  // ---- By distortion + lambda * bits -------------------------------------------------------------------------------
+
   // No coefficient of the attempt's prediction error can reach a level. For luma: a coefficient (times 8) is at most
-  // twice its block's sum of differences; with `share` 1 that is certain of the four blocks together, with 2 of four
-  // that share the sum evenly. For chroma: its square is at most 64 times the block's squared error.
-  bool has_no_levels(uint32_t sad, uint32_t share, const Attempt& attempt) const {
+  // twice its block's sum of differences. For chroma: its square is at most 64 times the block's squared error.
+  bool has_no_levels(uint32_t sad, const Attempt& attempt) const {
     const uint32_t weight = task_.residual.non_intra->least_weight[quantizer()];
-    if (2 * sad >= share * weight) return false;
+    if (2 * sad >= weight) return false;
     const MacroblockSamples& p = attempt.prediction;
     const Planes& s = task_.source;
     return 64 * motion_.sse(s.at(1, column_, row_), s.stride[1], p.cb, 8, 8, 8) < weight * weight &&
@@ -133,29 +82,6 @@ class BandCoder {
     attempt.kind = MacroblockKind::inter;
     attempt.pattern = 0;
     take(attempt);
-  }
-
-  void code_fast() {
-    const SearchResult found = search();
-    // The squares of the error sum up to sad^2 / 256 at least.
-    const uint64_t error = static_cast<uint64_t>(found.sad) * found.sad / 256;
-    if (found.sad >= 1024 && may_be_intra(error, 1500)) {
-      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
-    } else {
-      predict(found.vector, attempts_[0]);
-      if (has_no_levels(found.sad, 2, attempts_[0])) return take_without_levels(attempts_[0]);
-      attempt_inter(task_.residual, task_.source, column_, row_, false, attempts_[0]);
-    }
-    take(attempts_[0]);
-  }
-
-  // ---- By distortion + lambda * bits -------------------------------------------------------------------------------
-
-  // The first and the last macroblock of a slice are never skipped [2.4.4.4].
-  bool may_skip() const {
-    const bool is_first = column_ == 0 && row_ % task_.slice_rows == 0;
-    const bool is_last = column_ == task_.columns - 1 && ((row_ + 1) % task_.slice_rows == 0 || row_ + 1 == task_.rows);
-    return !is_first && !is_last;
   }
 
   int64_t prediction_error(const Attempt& attempt) const {
@@ -238,10 +164,10 @@ class BandCoder {
   // The neighbors of the vector that came out best, by what they really cost.
   void refine_by_cost() {
     const MotionVector center = attempts_[best_].vector;
-    const VectorRange range = vector_range(task_.reference, column_, row_, task_.f_code);
+    const VectorRange reach = range();
     for (int i = 0; i < 9; ++i) {
       const int x = center.x_halfpel + i % 3 - 1, y = center.y_halfpel + i / 3 - 1;
-      if (i != 4 && range.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)});
+      if (i != 4 && reach.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)});
     }
   }
 
@@ -250,7 +176,7 @@ class BandCoder {
                                              task_.reference.stride[0]);
     if (2 * still_sad < task_.residual.non_intra->least_weight[quantizer()]) {
       predict({}, attempts_[0]);
-      if (has_no_levels(still_sad, 1, attempts_[0])) return take_without_levels(attempts_[0]);
+      if (has_no_levels(still_sad, attempts_[0])) return take_without_levels(attempts_[0]);
     }
     const SearchResult found = search();
     least_ = INT64_MAX;
@@ -259,7 +185,7 @@ class BandCoder {
     if (found.vector != MotionVector{} && (task_.effort == Effort::best || still_sad < found.sad * 2)) try_vector({});
     const MotionVector predicted = predicted_vector();
     if (predicted != found.vector && predicted != MotionVector{} &&
-        vector_range(task_.reference, column_, row_, task_.f_code).contains(predicted.x_halfpel, predicted.y_halfpel))
+        range().contains(predicted.x_halfpel, predicted.y_halfpel))
       try_vector(predicted);
     if (task_.effort == Effort::best) refine_by_cost();
     const int64_t error = prediction_error(attempts_[best_]) / kDistortionScale;
@@ -280,10 +206,7 @@ class BandCoder {
       macroblock.kind = MacroblockKind::skipped;
   }
 
-  const PictureTask& task_;
-  Band& band_;
-  const MotionKernels& motion_;
-  int row_ = 0, column_ = 0;
+  FastCoder fast_;
   Attempt attempts_[2];
   int best_ = 0;
   int64_t least_ = 0;

@@ -12,7 +12,6 @@ class Search {
 
   SearchResult run() {
     try_candidates();
-    if (best_.sad < options_.good_sad) return best_;
     if (options_.wide) walk(4);
     walk(2);
     refine();

@@ -19,8 +19,7 @@ VectorRange vector_range(const Planes& reference, int column, int row, int f_cod
 
 struct SearchOptions {
   int max_steps = 8;      // of the pattern
-  uint32_t good_sad = 0;  // from which on the search ends
-  bool wide = false;      // the eight neighbors at distance 2 too before it, and more
+  bool wide = false;      // a pattern of twice the size before it
   bool hadamard = false;  // half samples by SATD instead of SAD
 };
 
@@ -46,5 +45,15 @@ struct SearchResult {
 };
 
 SearchResult search_motion(const SearchInput& input, const SearchOptions& options);
+
+// The search of Effort::fast: candidates as they are, half samples too; downhill from the best at its phase; half
+// samples around it only where the neighbors do not know better.
+struct FastSearchOptions {
+  uint32_t still_sad = 0;    // of the zero vector
+  uint32_t still_bonus = 0;  // what the zero vector is favored by, as it may be skipped
+  uint32_t good_sad = 0;     // from which on the search ends
+  bool believes_neighbors = true;
+};
+SearchResult search_fast(const SearchInput& input, const FastSearchOptions& options);
 
 }  // namespace pac::mpeg1

@@ -118,23 +118,19 @@ class BandWriter {
     bits_.put(static_cast<uint32_t>(motion.r), r_size);
   }
 
+  // first_is_special: the block is not intra, so that it has a level.
   void write_tokens(const Token* tokens, int count, bool first_is_special) {
-    for (int i = 0; i < count; ++i) {
+    int i = 0;
+    if (first_is_special && token_run(tokens[0]) == 0 && (token_level(tokens[0]) == 1 || token_level(tokens[0]) == -1))
+      bits_.put(token_level(tokens[i++]) < 0 ? 3 : 2, 2);  // dct_coeff_first
+    for (; i < count; ++i) {
       const int run = token_run(tokens[i]), level = token_level(tokens[i]);
-      const uint32_t sign = level < 0 ? 1 : 0;
-      const int magnitude = level < 0 ? -level : level;
-      if (i == 0 && first_is_special && run == 0 && magnitude == 1) {  // dct_coeff_first
-        bits_.put(2 | sign, 2);
-        continue;
+      if (run < kTokenRuns && level > -kTokenLevels && level < kTokenLevels) {
+        const uint32_t entry = kWriting.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)];
+        bits_.put(entry >> 5, static_cast<int>(entry & 31));
+      } else {
+        write_escape(run, level);
       }
-      if (run <= kMaxTableRun && magnitude <= kMaxTableLevel) {
-        const Code& code = kWriting.run_level[static_cast<size_t>(run)][static_cast<size_t>(magnitude)];
-        if (code.length != 0) {
-          bits_.put(static_cast<uint32_t>(code.bits) << 1 | sign, code.length + 1);
-          continue;
-        }
-      }
-      write_escape(run, level);
     }
     put(kEndOfBlock);
   }

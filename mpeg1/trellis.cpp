@@ -116,13 +116,15 @@ void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& 
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
     const int level = magnitude_of(levels[position]);
-    if (level == 1) {
+    const int64_t r = 8 * int64_t{reconstruct(block, level, position)};
+    bool pays = r != 0;  // decoders disagree about such levels
+    if (pays && level == 1) {
       const int64_t c = coefficient(block, position);
-      const int64_t r = 8 * int64_t{reconstruct(block, 1, position)};
-      if (r * (2 * c - r) <= block.lambda * run_level_bits(position - last - 1, 1)) {  // c^2 - (c - r)^2
-        levels[position] = 0;
-        continue;
-      }
+      pays = r * (2 * c - r) > block.lambda * run_level_bits(position - last - 1, 1);  // c^2 - (c - r)^2
+    }
+    if (!pays) {
+      levels[position] = 0;
+      continue;
     }
     kept |= uint64_t{1} << position;
     last = position;

@@ -144,6 +144,17 @@ constexpr ReadingTables make_reading_tables() {
   return tables;
 }
 
+constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
+  const int magnitude = level < 0 ? -level : level;
+  if (run <= kMaxTableRun && magnitude <= kMaxTableLevel) {
+    const Code& code = tables.run_level[static_cast<size_t>(run)][static_cast<size_t>(magnitude)];
+    const uint32_t bits = static_cast<uint32_t>(code.bits) << 1 | (level < 0 ? 1u : 0u);
+    if (code.length != 0) return bits << 5 | (code.length + 1u);
+  }
+  const uint32_t escape = static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run);
+  return (escape << 8 | (static_cast<uint32_t>(level) & 255)) << 5 | 20;  // [table B.5f]
+}
+
 constexpr WritingTables make_writing_tables() {
   WritingTables tables{};
   for (auto& row : tables.bits)
@@ -152,6 +163,11 @@ constexpr WritingTables make_writing_tables() {
     tables.run_level[entry.run][entry.level] = entry.code;
     tables.bits[entry.run][entry.level] = static_cast<uint8_t>(entry.code.length + 1);
   }
+  for (int run = 0; run < kTokenRuns; ++run)
+    for (int level = 1 - kTokenLevels; level < kTokenLevels; ++level)
+      if (level != 0)
+        tables.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)] =
+            token_code(tables, run, level);
   return tables;
 }
 

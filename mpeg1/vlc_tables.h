@@ -78,7 +78,13 @@ extern const ReadingTables kReading;
 
 // ---- For writing ---------------------------------------------------------------------------------------------------
 
+// What the table of whole tokens knows: runs below kTokenRuns, levels -kTokenLevels < level < kTokenLevels.
+constexpr int kTokenRuns = 32, kTokenLevels = 64;
+
 struct WritingTables {
+  // dct_coeff_next with the sign, escapes included: code << 5 | length at [run][level + kTokenLevels]; level 0:
+  // nothing.
+  std::array<std::array<uint32_t, 2 * kTokenLevels>, kTokenRuns> token;
   // [run][|level|]: code without sign; length 0 where only the escape serves.
   std::array<std::array<Code, kMaxTableLevel + 1>, kMaxTableRun + 1> run_level;
   // Bits of dct_coeff_next with the sign or the escape.

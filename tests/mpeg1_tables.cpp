@@ -61,6 +61,21 @@ TEST_CASE("each coefficient code reads back as its run and level, with either si
   CHECK(run_level_bits(0, 128) == 28);
 }
 
+TEST_CASE("a token is written as its code with the sign, or as the escape where there is none") {
+  for (int run = 0; run < kTokenRuns; ++run)
+    for (int level = 1 - kTokenLevels; level < kTokenLevels; ++level) {
+      if (level == 0) continue;
+      const int magnitude = level < 0 ? -level : level;
+      const uint32_t entry = kWriting.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)];
+      uint32_t expected = 1u << 14 | static_cast<uint32_t>(run) << 8 | (static_cast<uint32_t>(level) & 255);
+      for (const RunLevelCode& code : kRunLevelCodes)
+        if (code.run == run && code.level == magnitude)
+          expected = static_cast<uint32_t>(code.code.bits) << 1 | (level < 0 ? 1u : 0u);
+      CHECK(entry >> 5 == expected);
+      CHECK(static_cast<int>(entry & 31) == run_level_bits(run, magnitude));
+    }
+}
+
 TEST_CASE("motion codes and address increments read back") {
   for (int i = 1; i < 36; ++i) {
     const Code& code = kAddressIncrementCodes[static_cast<size_t>(i)];

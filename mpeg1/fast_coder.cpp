@@ -1,0 +1,189 @@
+#include "mpeg1/fast_coder.h"
+
+#include <bit>
+#include <cstring>
+
+#include "base/kernels/block_kernels.h"
+#include "mpeg1/vlc_tables.h"
+
+namespace pac::mpeg1 {
+namespace {
+
+// Below it (an error of 2 a sample) a good intra macroblock does not pay.
+constexpr uint32_t kLeastIntraSad = 512;
+constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pattern longer, about
+
+}  // namespace
+
+FastCoder::Outcome FastCoder::code(int column, int row) {
+  column_ = column;
+  row_ = row;
+  uint32_t quarters[4];
+  motion_.sad16_quarters(source(), task_.source.stride[0], task_.reference.at(0, column_, row_),
+                         task_.reference.stride[0], quarters);
+  if (stays(quarters)) {
+    keep_reference();
+    return Outcome::done;
+  }
+  uint32_t sad = 0;
+  vector_ = search(quarters[0] + quarters[1] + quarters[2] + quarters[3], sad);
+  // The squares of the error sum up to sad^2 / 256 at least.
+  if (sad >= kLeastIntraSad && may_be_intra(static_cast<uint64_t>(sad) * sad / 256, 1500)) return Outcome::intra;
+  predict_macroblock(motion_, task_.reference, column_, row_, vector_, task_.target);
+  return code_errors();
+}
+
+// The picture before will do as it is. With S the sum of a block's differences the first coefficient (times 8) is at
+// most S, the others at most 2 S, which takes an error of a basis function's shape; ordinary ones are far smaller. So
+// below 3/4 of the least divisor there is hardly a level, and none that is worth a macroblock's header.
+bool FastCoder::stays(const uint32_t (&quarters)[4]) const {
+  const uint32_t limit = (3u * task_.residual.non_intra->least_weight[quantizer()] + 3) / 4;
+  const uint32_t largest = std::max({quarters[0], quarters[1], quarters[2], quarters[3]});
+  if (largest >= limit) return false;
+  const Planes& s = task_.source;
+  const Planes& r = task_.reference;
+  return motion_.sad8(s.at(1, column_, row_), s.stride[1], r.at(1, column_, row_), r.stride[1]) < limit &&
+         motion_.sad8(s.at(2, column_, row_), s.stride[2], r.at(2, column_, row_), r.stride[2]) < limit;
+}
+
+void FastCoder::keep_reference() {
+  vector_ = {};
+  coded_.pattern = 0;
+  copy_macroblocks(task_.reference, column_, row_, 1, task_.target);
+  describe();
+}
+
+MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
+  MotionVector candidates[kMaxCandidates];
+  const int n = collect_candidates(candidates);
+  const auto q = static_cast<uint32_t>(quantizer());
+  sad = still_sad;
+  const bool all_still = std::all_of(candidates, candidates + n, [](MotionVector v) { return v == MotionVector{}; });
+  if (n > 0 && all_still && still_sad < std::max(256u, 32 * q)) return {};
+  FastSearchOptions options;
+  options.good_sad = 32 * q;
+  options.still_sad = still_sad;
+  options.still_bonus = (kBitsMotion - kBitsSkipped) * q;
+  // Where the neighbors agree they are believed, but for some macroblocks that look for themselves.
+  options.believes_neighbors = ((column_ ^ row_) & 3) != 0;
+  const SearchResult found = search_fast(search_input(candidates, n), options);
+  sad = found.sad;
+  return found.vector;
+}
+
+// The target holds the prediction.
+FastCoder::Outcome FastCoder::code_errors() {
+  const Planes& s = task_.source;
+  const Planes& t = task_.target;
+  const int least = task_.residual.non_intra->least_weight[quantizer()];
+  uint32_t reaching = 0;
+  for (const int half : {0, 1})
+    reaching |= motion_.fdct_residual_reaching(source() + 8 * half * s.stride[0], s.stride[0],
+                                               t.at(0, column_, row_) + 8 * half * t.stride[0], t.stride[0], 2, least,
+                                               dct_ + 128 * half)
+                << (2 * half);
+  for (const int plane : {1, 2})
+    reaching |= motion_.fdct_residual_reaching(s.at(plane, column_, row_), s.stride[plane], t.at(plane, column_, row_),
+                                               t.stride[plane], 1, least, dct_ + 64 * (3 + plane))
+                << (3 + plane);
+  coded_.n_blocks = coded_.n_tokens = coded_.bits = 0;
+  coded_.gain = 0;
+  coded_.pattern = 0;
+  std::memset(coded_.counts, 0, sizeof coded_.counts);
+  for (; reaching != 0; reaching &= reaching - 1) {
+    const int block = std::countr_zero(reaching);
+    alignas(64) int16_t levels[64];
+    uint64_t nonzero = 0;
+    task_.residual.kernels->block.quantize(dct_ + 64 * block, task_.residual.non_intra->divide[quantizer()], 1, levels,
+                                           &nonzero);
+    if (!choose_levels(block, levels, nonzero)) return Outcome::too_large;
+  }
+  if (coded_.pattern != 0 && !is_worth_coding()) coded_.pattern = 0;
+  if (coded_.pattern != 0) reconstruct();
+  describe();
+  return Outcome::done;
+}
+
+// Levels of 1 that do not pay are left out, then the block if what is left does not. False: a level has no code.
+bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero) {
+  const int16_t* dct = dct_ + 64 * block;
+  const uint16_t* weight = task_.residual.non_intra->weight[quantizer()];
+  const int64_t bit = lambda();
+  Token* tokens = coded_.tokens + coded_.n_tokens;
+  int16_t* coefficients = coded_.coefficients + 64 * coded_.n_blocks;
+  std::memset(coefficients, 0, 64 * sizeof *coefficients);
+  int last = -1, count = 0, bits = kEndOfBlock.length + kPatternBits;
+  int64_t gain = 0;
+  for (; nonzero != 0; nonzero &= nonzero - 1) {
+    const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
+    const int level = levels[position], magnitude = level < 0 ? -level : level;
+    if (magnitude > kMaxLevel) return false;
+    const int c = dct[natural] < 0 ? -dct[natural] : dct[natural];
+    const int value = reconstruct_non_intra(magnitude, weight[position]);
+    if (value == 0) continue;                                        // decoders disagree about it
+    const int64_t saved = int64_t{8 * value} * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
+    const int run = position - last - 1;
+    const int spent = run_level_bits(run, magnitude) - (count == 0 && run == 0 && magnitude == 1 ? 1 : 0);
+    if (magnitude == 1 && saved <= bit * spent) continue;
+    gain += saved;
+    bits += spent;
+    tokens[count++] = make_token(run, level);
+    coefficients[natural] = static_cast<int16_t>(level < 0 ? -value : value);
+    last = position;
+  }
+  if (count == 0 || gain <= bit * bits) return true;
+  coded_.is_flat[coded_.n_blocks] = last == 0;
+  coded_.order[coded_.n_blocks++] = static_cast<uint8_t>(block);
+  coded_.n_tokens += count;
+  coded_.counts[block] = static_cast<uint8_t>(count);
+  coded_.bits += bits - kPatternBits;
+  coded_.gain += gain;
+  coded_.pattern = static_cast<uint8_t>(coded_.pattern | 32 >> block);
+  return true;
+}
+
+// Against the same vector without coefficients.
+bool FastCoder::is_worth_coding() const {
+  const bool moves = vector_ != MotionVector{};
+  const int with = coded_.bits + kPatternCodes[coded_.pattern].length + (moves ? kBitsMotionCoded : kBitsCoded);
+  const int without = moves || !may_skip() ? kBitsMotion : kBitsSkipped;
+  return coded_.gain > lambda() * (with - without);
+}
+
+void FastCoder::reconstruct() const {
+  const Planes& t = task_.target;
+  alignas(64) int16_t coefficients[64 * kBlocks];
+  uint8_t* samples[kBlocks];
+  ptrdiff_t strides[kBlocks];
+  size_t n = 0;
+  for (int i = 0; i < coded_.n_blocks; ++i) {
+    const int block = coded_.order[i], plane = block < 4 ? 0 : block - 3;
+    uint8_t* at = t.at(plane, column_, row_);
+    if (block < 4) at += (block & 1) * 8 + (block >> 1) * 8 * t.stride[0];
+    if (coded_.is_flat[i]) {
+      motion_.idct_dc_add(coded_.coefficients[64 * i], at, t.stride[plane]);
+      continue;
+    }
+    std::memcpy(coefficients + 64 * n, coded_.coefficients + 64 * i, 64 * sizeof *coefficients);
+    samples[n] = at;
+    strides[n++] = t.stride[plane];
+  }
+  if (n != 0) motion_.idct_add(coefficients, n, samples, strides);
+}
+
+void FastCoder::describe() {
+  Macroblock& macroblock = task_.macroblocks[address()];
+  macroblock.kind = MacroblockKind::inter;
+  macroblock.vector = vector_;
+  macroblock.pattern = coded_.pattern;
+  macroblock.quantizer = static_cast<uint8_t>(quantizer());
+  macroblock.first_token = static_cast<uint32_t>(band_.tokens.size());
+  if (coded_.pattern != 0) {
+    std::memcpy(macroblock.counts, coded_.counts, sizeof coded_.counts);
+    band_.tokens.insert(band_.tokens.end(), coded_.tokens, coded_.tokens + coded_.n_tokens);
+  } else if (vector_ == MotionVector{} && may_skip()) {
+    macroblock.kind = MacroblockKind::skipped;
+  }
+}
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,45 @@
+// Macroblocks of P pictures at Effort::fast: one prediction each, one pass over its levels.
+#pragma once
+
+#include "mpeg1/macroblock_place.h"
+
+namespace pac::mpeg1 {
+
+class FastCoder : private MacroblockPlace {
+ public:
+  FastCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band) {}
+
+  enum class Outcome : uint8_t {
+    done,
+    intra,     // nothing was coded: the macroblock is better off without a prediction
+    too_large  // nothing was coded: a level has no code at this quantizer; vector() predicts
+  };
+  Outcome code(int column, int row);
+  MotionVector vector() const { return vector_; }
+
+ private:
+  bool stays(const uint32_t (&quarters)[4]) const;
+  void keep_reference();
+  MotionVector search(uint32_t still_sad, uint32_t& sad) const;
+  Outcome code_errors();
+  bool choose_levels(int block, const int16_t* levels, uint64_t nonzero);
+  bool is_worth_coding() const;
+  void reconstruct() const;
+  void describe();
+
+  MotionVector vector_;
+  // Of the blocks with levels, in the order of the stream.
+  struct Coded {
+    int n_blocks = 0, n_tokens = 0, bits = 0;
+    int64_t gain = 0;  // distortion that the levels take away
+    uint8_t pattern = 0;
+    uint8_t counts[kBlocks] = {};
+    uint8_t order[kBlocks] = {};
+    bool is_flat[kBlocks] = {};  // nothing but the first coefficient
+    Token tokens[64 * kBlocks];
+    alignas(64) int16_t coefficients[64 * kBlocks];
+  } coded_;
+  alignas(64) int16_t dct_[64 * kBlocks];
+};
+
+}  // namespace pac::mpeg1

@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cstdlib>
+
+#include "mpeg1/motion_search.h"
+
+namespace pac::mpeg1 {
+namespace {
+
+constexpr int kMaxSteps = 8;
+constexpr int kEnoughNeighbors = 2;  // that have the vector
+
+class FastSearch {
+ public:
+  FastSearch(const SearchInput& input, const FastSearchOptions& options) : in_(input), options_(options) {}
+
+  SearchResult run() {
+    start_still();
+    const int agreeing = try_candidates();
+    if (best_.sad < options_.good_sad) return best_;
+    const bool moved = walk();
+    if (options_.believes_neighbors && !moved && agreeing >= kEnoughNeighbors) return best_;
+    refine();
+    return best_;
+  }
+
+ private:
+  uint32_t bits_cost(int x, int y) const {
+    const int dx = std::min(std::abs(x - in_.predicted.x_halfpel), kMaxDifference);
+    const int dy = std::min(std::abs(y - in_.predicted.y_halfpel), kMaxDifference);
+    return (static_cast<uint32_t>(in_.bits_of_difference[dx] + in_.bits_of_difference[dy]) * in_.lambda_q4) >> 4;
+  }
+
+  void start_still() {
+    const uint32_t cost = options_.still_sad + bits_cost(0, 0);
+    best_ = {{}, options_.still_sad, cost - std::min(cost, options_.still_bonus)};
+  }
+
+  // A vector inside the range. True where it is the best so far.
+  bool try_vector(int x, int y) {
+    const uint8_t* reference =
+        in_.reference.data[0] + (16 * in_.row + (y >> 1)) * in_.reference.stride[0] + 16 * in_.column + (x >> 1);
+    const uint32_t sad = in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)](in_.source, in_.source_stride, reference,
+                                                                        in_.reference.stride[0]);
+    const uint32_t cost = sad + bits_cost(x, y);
+    if (cost >= best_.cost) return false;
+    best_ = {{static_cast<int16_t>(x), static_cast<int16_t>(y)}, sad, cost};
+    return true;
+  }
+
+  // Returns how many candidates are the best one.
+  int try_candidates() {
+    MotionVector tried[32] = {};
+    int n_tried = 1;  // tried[0] is zero
+    for (int i = 0; i < in_.n_candidates; ++i) {
+      const MotionVector v = in_.range.clamp(in_.candidates[i]);
+      if (n_tried == 32 || std::find(tried, tried + n_tried, v) != tried + n_tried) continue;
+      tried[n_tried++] = v;
+      try_vector(v.x_halfpel, v.y_halfpel);
+    }
+    return static_cast<int>(std::count(in_.candidates, in_.candidates + in_.n_candidates, best_.vector));
+  }
+
+  // Downhill in a diamond of whole samples, without looking back to where it came from.
+  bool walk() {
+    static constexpr int kDx[4] = {2, 0, -2, 0}, kDy[4] = {0, 2, 0, -2};
+    int came_from = -1;
+    for (int step = 0; step < kMaxSteps; ++step) {
+      const MotionVector center = best_.vector;
+      int moved = -1;
+      for (int direction = 0; direction < 4; ++direction) {
+        const int x = center.x_halfpel + kDx[direction], y = center.y_halfpel + kDy[direction];
+        if (direction != came_from && in_.range.contains(x, y) && try_vector(x, y)) moved = direction;
+      }
+      if (moved < 0) return step > 0;
+      came_from = moved ^ 2;
+    }
+    return true;
+  }
+
+  // The better neighbor to the side, the better one up or down, then the corners beside the best.
+  void refine() {
+    const MotionVector center = best_.vector;
+    const auto try_half = [&](int dx, int dy) {
+      const int x = center.x_halfpel + dx, y = center.y_halfpel + dy;
+      if (in_.range.contains(x, y)) try_vector(x, y);
+    };
+    try_half(-1, 0), try_half(1, 0), try_half(0, -1), try_half(0, 1);
+    const int dx = best_.vector.x_halfpel - center.x_halfpel, dy = best_.vector.y_halfpel - center.y_halfpel;
+    if (dx != 0)
+      try_half(dx, -1), try_half(dx, 1);
+    else if (dy != 0)
+      try_half(-1, dy), try_half(1, dy);
+  }
+
+  const SearchInput& in_;
+  const FastSearchOptions& options_;
+  SearchResult best_;
+};
+
+}  // namespace
+
+SearchResult search_fast(const SearchInput& input, const FastSearchOptions& options) {
+  return FastSearch(input, options).run();
+}
+
+}  // namespace pac::mpeg1
