@@ -71,7 +71,7 @@ TEST_CASE("a token is written as its code with the sign, or as the escape where 
       for (const RunLevelCode& code : kRunLevelCodes)
         if (code.run == run && code.level == magnitude)
           expected = static_cast<uint32_t>(code.code.bits) << 1 | (level < 0 ? 1u : 0u);
-      CHECK(entry >> 5 == expected);
+      CHECK((entry >> 5) == expected);
       CHECK(static_cast<int>(entry & 31) == run_level_bits(run, magnitude));
     }
 }

@@ -1,0 +1,75 @@
+// The quantizers of a picture's macroblocks, and what a bit may cost in distortion.
+#include <algorithm>
+#include <cmath>
+
+#include "base/kernels/block_kernels.h"
+#include "mpeg1/encoder_state.h"
+#include "mpeg1/trellis.h"
+
+namespace pac::mpeg1 {
+namespace {
+
+// What a bit may cost in squared error, over quantizer_scale squared. At high rate 6 dB a bit and a uniform error of a
+// step (2 quantizer_scale) give 0.46; blocks of few levels want more.
+constexpr double kLambda = 0.85;
+
+// I pictures: what quantizer_scale is multiplied by where the macroblock moves and where it stays, how much of it is
+// expected to stay before anything was seen, and what lambda is multiplied by.
+constexpr double kMovingIntraScale = 0.8, kStillIntraScale = 0.6, kUnknownStillness = 0.3, kIntraLambda = 0.8;
+
+double mix(double a, double b, double share) {
+  return a + (b - a) * share;
+}
+
+}  // namespace
+
+void Encoder::State::make_lambdas() {
+  double mean = 0;  // of the matrix, where most levels are
+  for (size_t k = 1; k < 16; ++k) mean += sequence.non_intra_matrix[kNaturalFromZigzag[k]] / 15.0;
+  for (int q = 1; q < 32; ++q) {
+    const double step = q * mean / 16;
+    const double of_p = kDistortionScale * kLambda * step * step;
+    lambda[0][q] = std::max<int64_t>(1, static_cast<int64_t>(of_p));
+    lambda[1][q] = std::max<int64_t>(1, static_cast<int64_t>(of_p * mix(1, kIntraLambda, reuse())));
+  }
+}
+
+// How much of an I picture's quality the pictures after it inherit, 0..1: as measured with groups of 15.
+double Encoder::State::reuse() const {
+  return std::min(1.0, (options.gop_length - 1) / 14.0);
+}
+
+// What quantizer_scale is multiplied by in I pictures. The pictures after them repeat their quality and their errors,
+// so that a bit there is worth more, the more so the longer the macroblock stays as it is.
+double Encoder::State::intra_scale(size_t macroblock) const {
+  const double stillness = n_watched > 0 ? static_cast<double>(still[macroblock]) / n_watched : kUnknownStillness;
+  return mix(1, mix(kMovingIntraScale, kStillIntraScale, stillness), reuse());
+}
+
+// Between integers the first part of the macroblocks has the smaller quantizer: few changes of it in the stream.
+double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
+  const bool is_free = !has_rate && picture.quantizer_scale == 0;
+  double sum = 0;
+  for (size_t i = 0; i < quantizers.size(); ++i) {
+    const double wanted = type == PictureType::I && is_free ? scale * intra_scale(i) : scale;
+    const double position = (static_cast<double>(i) + 0.5) / static_cast<double>(quantizers.size());
+    quantizers[i] = static_cast<uint8_t>(std::clamp(static_cast<int>(std::floor(wanted + position)), 1, 31));
+    if (!picture.quantizer_map.empty()) quantizers[i] = picture.quantizer_map[i];
+    sum += quantizers[i];
+  }
+  const bool is_exact = picture.quantizer_map.empty() && (type == PictureType::P || !is_free);
+  return is_exact ? scale : sum / static_cast<double>(quantizers.size());
+}
+
+void Encoder::State::watch_stillness(PictureType type) {
+  if (type == PictureType::I) {
+    std::fill(still.begin(), still.end(), uint8_t{0});
+    n_watched = 0;
+    return;
+  }
+  ++n_watched;
+  for (size_t i = 0; i < still.size(); ++i)
+    if (macroblocks[i].kind != MacroblockKind::intra && macroblocks[i].pattern == 0) ++still[i];
+}
+
+}  // namespace pac::mpeg1
