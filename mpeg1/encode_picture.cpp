@@ -4,6 +4,11 @@
 #include "mpeg1/encoder_state.h"
 
 namespace pac::mpeg1 {
+namespace {
+
+constexpr int kLargeColumns = 64;  // macroblocks, from which on best looks twice as far
+
+}  // namespace
 
 PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& picture) {
   PictureTask task;
@@ -24,6 +29,12 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     if (replaced.width() == 0) replaced = Frame420(16 * columns, 16 * rows);
     fill_planes(view_of(*picture.reference), Planes::of(replaced));
     task.reference = Planes::of(replaced);
+  }
+  if (options.effort == Effort::best && columns >= kLargeColumns) task.f_code = 5;
+  if (type == PictureType::P && options.effort != Effort::fast) {
+    const bool is_replaced = picture.reference != nullptr;
+    task.coarse_vectors = coarse.search(is_replaced ? &task.reference : nullptr, task.f_code, kernels.motion, pool);
+    task.coarse_columns = coarse.block_columns();
   }
   task.quantizers = quantizers.data();
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;

@@ -57,6 +57,7 @@ void Encoder::State::finish_picture(PictureType type) {
   std::swap(reconstruction, reference);  // the next picture's reference, and what reconstruction() shows
   has_last_vectors = type == PictureType::P;
   for (size_t i = 0; i < macroblocks.size(); ++i) last_vectors[i] = macroblocks[i].vector;
+  coarse.finish_picture();
   age_macroblocks();
   watch_stillness(type);
   ++temporal_reference;
@@ -77,6 +78,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
   if (const char* problem = problem_with_picture(frame, picture)) return Failure{Error::bad_argument, 0, problem};
   const size_t before = out.size();
   set_source(frame);
+  if (options.effort != Effort::fast) coarse.start_picture(source_planes);
   const bool free_quantizer = picture.quantizer_map.empty() && picture.quantizer_scale == 0;
   PictureType type = choose_type(picture);
   force_intra();

@@ -40,7 +40,8 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
       rows(macroblock_rows(o.height)),
       source(16 * columns, 16 * rows),
       reconstruction(16 * columns, 16 * rows),
-      reference(16 * columns, 16 * rows) {
+      reference(16 * columns, 16 * rows),
+      coarse(columns, rows) {
   sequence.width = o.width;
   sequence.height = o.height;
   sequence.pel_aspect_ratio_code = o.pel_aspect_ratio_code;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "mpeg1/coarse_motion.h"
 #include "mpeg1/headers.h"
 #include "mpeg1/macroblock_coder.h"
 #include "mpeg1/mpeg1.h"
@@ -57,6 +58,7 @@ struct Encoder::State {
   Frame420 source, reconstruction, reference, replaced;  // whole macroblocks
   Planes source_planes;                                  // of `source`, or of the caller's frame during add()
   std::vector<Macroblock> macroblocks;
+  CoarseMotion coarse;  // not at Effort::fast
   std::vector<MotionVector> last_vectors;
   bool has_last_vectors = false;
   std::vector<uint8_t> quantizers;

@@ -18,10 +18,12 @@ struct PictureTask {
   Effort effort = Effort::normal;
   PictureType type = PictureType::I;
   int columns = 0, rows = 0, slice_rows = 0;
-  Planes source, reference, target;            // target: the reconstruction
-  const uint8_t* quantizers = nullptr;         // of each macroblock, raster order
-  const MotionVector* last_vectors = nullptr;  // of the picture before, or null
-  const MotionVector* candidates = nullptr;    // of the caller
+  Planes source, reference, target;              // target: the reconstruction
+  const uint8_t* quantizers = nullptr;           // of each macroblock, raster order
+  const MotionVector* last_vectors = nullptr;    // of the picture before, or null
+  const MotionVector* coarse_vectors = nullptr;  // of each 2 x 2 macroblocks, coarse_columns a row, or null
+  int coarse_columns = 0;
+  const MotionVector* candidates = nullptr;  // of the caller
   int candidates_per_macroblock = 0;
   const uint8_t* must_be_intra = nullptr;       // intra refresh: a byte a macroblock, or null
   int f_code = 4;                               // vectors stay in its range

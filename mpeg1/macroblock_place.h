@@ -36,7 +36,8 @@ class MacroblockPlace {
            task_.bits_of_difference[std::min(std::abs(v.y_halfpel - p.y_halfpel), kMaxDifference)];
   }
 
-  // The caller's, those of the neighbors in the band, those of the picture before. Returns how many.
+  // The caller's, the coarse search's, those of the neighbors in the band, those of the picture before. Returns how
+  // many.
   int collect_candidates(MotionVector (&candidates)[kMaxCandidates]) const {
     int n = 0;
     const auto add = [&](MotionVector v) {
@@ -44,6 +45,7 @@ class MacroblockPlace {
     };
     for (int i = 0; i < std::min(task_.candidates_per_macroblock, 8); ++i)
       add(task_.candidates[address() * task_.candidates_per_macroblock + i]);
+    if (task_.coarse_vectors != nullptr) add(task_.coarse_vectors[row_ / 2 * task_.coarse_columns + column_ / 2]);
     if (column_ > 0) add(vector_at(column_ - 1, row_));
     if (row_ > band_.first_row) {
       add(vector_at(column_, row_ - 1));
