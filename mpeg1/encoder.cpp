@@ -24,6 +24,7 @@ PictureType Encoder::State::choose_type(const PictureOptions& picture) const {
 }
 
 void Encoder::State::start_group(std::vector<uint8_t>& out) {
+  if (in_sequence) adapt_matrices();
   write_sequence_header(sequence, out);
   GroupHeader group;
   const int pictures_a_second = (kPictureRatesMilli[options.picture_rate_code] + 999) / 1000;
@@ -91,7 +92,8 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     if (starts_group) start_group(out);
     header_bytes = out.size() - before;
     if (has_rate) rate.start_picture(type);
-    const double scale = picture.quantizer_scale != 0 ? picture.quantizer_scale : options.quantizer_scale;
+    const double scale =
+        picture.quantizer_scale != 0 ? picture.quantizer_scale : std::max(1.0, options.quantizer_scale);
     report = has_rate && free_quantizer ? code_at_rate(type, picture, out) : code_as_told(type, picture, scale, out);
     const bool is_cut = type == PictureType::P && options.scene_cuts && !picture.type &&
                         report.intra_macroblocks > kCutShare * static_cast<double>(macroblocks.size());

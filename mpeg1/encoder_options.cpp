@@ -1,6 +1,7 @@
 // What the encoder is asked for: whether it can be, and what follows from it for the whole sequence.
 #include <algorithm>
 
+#include "mpeg1/adapted_matrices.h"
 #include "mpeg1/encoder_state.h"
 #include "mpeg1/motion_search.h"
 
@@ -23,7 +24,8 @@ const char* problem_with(const SequenceOptions& o) {
   if (o.picture_rate_code < 1 || o.picture_rate_code > 8) return "picture_rate_code is outside 1..8";
   if (o.pel_aspect_ratio_code < 1 || o.pel_aspect_ratio_code > 14) return "pel_aspect_ratio_code is outside 1..14";
   if (o.gop_length < 1 || o.gop_length > kMaxGroupLength) return "gop_length is outside 1..132";
-  if (!(o.quantizer_scale >= 1 && o.quantizer_scale <= 31)) return "quantizer_scale is outside 1..31";
+  if (!(o.quantizer_scale >= kLeastQuantizerScale && o.quantizer_scale <= 31))
+    return "quantizer_scale is outside 0.1875..31";
   if (o.bit_rate_bps < 0 || o.bit_rate_bps > 400 * 0x3FFFE) return "bit_rate_bps is outside 0..104856800";
   if (o.vbv_buffer_size < 0 || o.vbv_buffer_size > 1023) return "vbv_buffer_size is outside 0..1023";
   if (o.slice_rows < 0 || o.threads < 0) return "slice_rows or threads is negative";
@@ -46,13 +48,14 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
   sequence.height = o.height;
   sequence.pel_aspect_ratio_code = o.pel_aspect_ratio_code;
   sequence.picture_rate_code = o.picture_rate_code;
-  sequence.has_intra_matrix = o.intra_matrix.has_value();
-  sequence.has_non_intra_matrix = o.non_intra_matrix.has_value();
-  sequence.intra_matrix = o.intra_matrix.value_or(kDefaultIntraMatrix);
-  sequence.non_intra_matrix = o.non_intra_matrix.value_or(kDefaultNonIntraMatrix);
+  QuantizerMatrix intra_matrix = o.intra_matrix.value_or(kDefaultIntraMatrix);
+  QuantizerMatrix non_intra_matrix = o.non_intra_matrix.value_or(kDefaultNonIntraMatrix);
+  if (o.bit_rate_bps == 0 && o.quantizer_scale < 1) {
+    intra_matrix = scaled_matrix(intra_matrix, o.quantizer_scale * intra_scale(0), true);
+    non_intra_matrix = scaled_matrix(non_intra_matrix, o.quantizer_scale, false);
+  }
   set_rate();
-  make_quantizers(sequence.intra_matrix, o.effort == Effort::fast ? kFastIntraRounding : 0.5, intra);
-  make_quantizers(sequence.non_intra_matrix, 0.0, non_intra);  // reconstruction lies half a step above the level
+  set_matrices(intra_matrix, non_intra_matrix);
   make_lambdas();
   const size_t count = static_cast<size_t>(columns) * static_cast<size_t>(rows);
   macroblocks.resize(count);
@@ -68,9 +71,34 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
     bands[static_cast<size_t>(i)].first_row = rows * i / n_bands;
     bands[static_cast<size_t>(i)].end_row = rows * (i + 1) / n_bands;
   }
+  if (o.adapt_matrices && o.effort != Effort::fast) {
+    statistics.resize(bands.size());
+    for (size_t i = 0; i < bands.size(); ++i) bands[i].statistics = &statistics[i];
+  }
   bits_of_difference.resize(kMaxDifference + 1);
   for (int i = 0; i <= kMaxDifference; ++i)
     bits_of_difference[static_cast<size_t>(i)] = static_cast<uint8_t>(motion_bits(std::min(i, 60), 0, 1));
+}
+
+void Encoder::State::set_matrices(const QuantizerMatrix& intra_matrix, const QuantizerMatrix& non_intra_matrix) {
+  sequence.intra_matrix = intra_matrix;
+  sequence.non_intra_matrix = non_intra_matrix;
+  sequence.has_intra_matrix = options.intra_matrix.has_value() || intra_matrix != kDefaultIntraMatrix;
+  sequence.has_non_intra_matrix = options.non_intra_matrix.has_value() || non_intra_matrix != kDefaultNonIntraMatrix;
+  make_quantizers(intra_matrix, options.effort == Effort::fast ? kFastIntraRounding : 0.5, intra);
+  make_quantizers(non_intra_matrix, 0.0, non_intra);  // reconstruction lies half a step above the level
+}
+
+// By the pictures since the last adaptation, which then count no more. A repeated sequence header may bring other
+// matrices [2.4.3.2].
+void Encoder::State::adapt_matrices() {
+  if (statistics.empty()) return;
+  for (size_t i = 1; i < statistics.size(); ++i) statistics[0].add(statistics[i]);
+  const QuantizerMatrix adapted_intra = adapted_matrix(statistics[0], sequence.intra_matrix, true, lambda[1][1]);
+  const QuantizerMatrix adapted_others = adapted_matrix(statistics[0], sequence.non_intra_matrix, false, lambda[0][1]);
+  if (adapted_intra != sequence.intra_matrix || adapted_others != sequence.non_intra_matrix)
+    set_matrices(adapted_intra, adapted_others);
+  for (CoefficientStatistics& of_band : statistics) of_band.clear();
 }
 
 // The header's rate and buffer: a second of the rate by default; for a fixed quantizer as large as can be said.

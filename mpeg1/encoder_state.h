@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "mpeg1/adapted_matrices.h"
 #include "mpeg1/coarse_motion.h"
 #include "mpeg1/headers.h"
 #include "mpeg1/macroblock_coder.h"
@@ -43,6 +44,8 @@ struct Encoder::State {
   void make_lambdas();
   void set_source(const Frame420& frame);
   void set_rate();
+  void set_matrices(const QuantizerMatrix& intra_matrix, const QuantizerMatrix& non_intra_matrix);
+  void adapt_matrices();
   PictureTask make_task(PictureType type, const PictureOptions& picture);
   void code_picture(const PictureTask& task);
   PictureReport write_picture(PictureType type, std::vector<uint8_t>& out);
@@ -65,6 +68,7 @@ struct Encoder::State {
   std::vector<uint8_t> bits_of_difference;
   std::vector<Band> bands;
   std::vector<BandBits> bits;
+  std::vector<CoefficientStatistics> statistics;  // of each band; empty: matrices stay
   bool has_rate = false;
   RateControl rate;
   size_t header_bytes = 0;      // of the sequence and group headers before the picture being coded

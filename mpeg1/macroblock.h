@@ -32,10 +32,13 @@ inline int token_level(Token token) {
   return (token & 511) - 256;
 }
 
+class CoefficientStatistics;
+
 // Macroblock rows that one thread codes from top to bottom. How a picture is divided depends on its size only.
 struct Band {
   int first_row = 0, end_row = 0;
   std::vector<Token> tokens;
+  CoefficientStatistics* statistics = nullptr;  // of its coefficients, where anybody asks
 };
 
 }  // namespace pac::mpeg1

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "mpeg1/adapted_matrices.h"
 #include "mpeg1/fast_coder.h"
 #include "mpeg1/macroblock_place.h"
 #include "mpeg1/trellis.h"
@@ -201,6 +202,7 @@ class BandCoder : private MacroblockPlace {
   void take(const Attempt& attempt) {
     Macroblock& macroblock = task_.macroblocks[address()];
     commit(task_.residual, attempt, task_.target, column_, row_, band_.tokens, macroblock);
+    if (band_.statistics != nullptr) band_.statistics->add(attempt);
     if (macroblock.kind == MacroblockKind::inter && macroblock.pattern == 0 && macroblock.vector == MotionVector{} &&
         may_skip())
       macroblock.kind = MacroblockKind::skipped;

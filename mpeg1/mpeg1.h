@@ -73,12 +73,15 @@ enum class Effort : uint8_t {
   best,    // wider search, full trellis, more candidates
 };
 
+constexpr double kLeastQuantizerScale = 0.1875;  // makes 3 of a matrix entry of 16
+
 struct SequenceOptions {
   int width = 0, height = 0;      // 1..kMaxWidth, 1..kMaxHeight, luma samples
   int picture_rate_code = 5;      // 1..8: kPictureRatesMilli
   int pel_aspect_ratio_code = 1;  // 1..14 [2.4.3.2]; 1 = square
   int gop_length = 15;            // an I picture every so many pictures, 1..132; display order is coding order
-  // 1..31 where bit_rate_bps is 0: of P pictures; between integers, macroblocks of both kinds. I pictures are quantized
+  // kLeastQuantizerScale..31 where bit_rate_bps is 0: of P pictures; below 1, quantizer_scale 1 and matrices that are
+  // multiplied by it; between integers, macroblocks of both kinds. I pictures are quantized
   // finer, down to 0.6 of it where the group before stood still: their quality is what the others inherit.
   double quantizer_scale = 4;
   int64_t bit_rate_bps = 0;  // 400..104857200 (multiple of 400 after rounding up): constant bit rate with VBV
@@ -89,6 +92,8 @@ struct SequenceOptions {
   bool scene_cuts = false;    // an I picture instead of a P picture where the scene changes
   bool intra_refresh = true;  // each macroblock intra at least once in 132 predicted codings [2.4.4.2]
   std::optional<QuantizerMatrix> intra_matrix, non_intra_matrix;  // absent: default
+  // Later groups begin with matrices that suit the coefficients of the groups before. Not at Effort::fast.
+  bool adapt_matrices = false;
   Limits limits;
 };
 

@@ -74,6 +74,40 @@ TEST_CASE("matrices below 16 quantize finer than quantizer_scale 1 does") {
   require_round_trip(frames, options, 50);
 }
 
+TEST_CASE("a quantizer_scale below 1 gives more quality than 1, down to its limit") {
+  const std::vector<Frame420> frames = clip(80, 64, 4);
+  for (const Effort effort : {Effort::fast, Effort::normal, Effort::best})
+    for (const double q : {mpeg1::kLeastQuantizerScale, 0.5}) {
+      CAPTURE(q);
+      mpeg1::SequenceOptions options;
+      options.width = 80;
+      options.height = 64;
+      options.effort = effort;
+      options.quantizer_scale = q;
+      require_round_trip(frames, options, q < 0.4 ? 50 : 46);
+    }
+  mpeg1::SequenceOptions too_fine;
+  too_fine.width = too_fine.height = 16;
+  too_fine.quantizer_scale = 0.1;
+  CHECK(!mpeg1::Encoder::create(too_fine).ok());
+}
+
+TEST_CASE("matrices that adapt to the groups before reach the decoder with the next sequence header") {
+  const std::vector<Frame420> frames = clip(176, 144, 24);
+  for (const Effort effort : {Effort::normal, Effort::best})
+    for (const double q : {1.0, 6.0}) {
+      CAPTURE(q);
+      mpeg1::SequenceOptions options;
+      options.width = 176;
+      options.height = 144;
+      options.effort = effort;
+      options.gop_length = 8;
+      options.quantizer_scale = q;
+      options.adapt_matrices = true;
+      require_round_trip(frames, options, q < 2 ? 40 : 28);
+    }
+}
+
 TEST_CASE("bytes do not depend on the instruction set or the number of threads") {
   const std::vector<Frame420> frames = clip(176, 288, 4);
   for (const Effort effort : {Effort::fast, Effort::normal, Effort::best}) {

@@ -91,13 +91,15 @@ int run_mpeg1_encode(Args args) {
   EncodeSettings settings;
   options.positional("IN.y4m", settings.in, "8-bit 4:2:0; - is stdin");
   options.text("-o|--output", "OUT", settings.out, ".m1v, or .mpg for a system stream; - is stdout", true);
-  options.real("--quantizer-scale", "Q", settings.sequence.quantizer_scale, 1, 31,
-               "fixed quantizer, also between integers (default 4)");
+  options.real("--quantizer-scale", "Q", settings.sequence.quantizer_scale, mpeg1::kLeastQuantizerScale, 31,
+               "fixed quantizer, also between integers; below 1 by finer matrices (default 4)");
   options.integer("--bit-rate", "BPS", settings.bit_rate_bps, 400, 100000000, "constant bit rate instead");
   options.integer("--gop", "N", settings.sequence.gop_length, 1, 132, "an I picture every N pictures (default 15)");
   options.integer("--slice-rows", "N", settings.sequence.slice_rows, 0, 175,
                   "macroblock rows a slice, 0: one slice a picture (default 0)");
   options.flag("--scene-cuts", settings.sequence.scene_cuts, "I pictures where the scene changes");
+  options.flag("--adapt-matrices", settings.sequence.adapt_matrices,
+               "later groups with matrices that suit the pictures before (not with --effort fast)");
   options.choice<mpeg1::Effort>(
       "--effort", settings.sequence.effort,
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
