@@ -27,16 +27,31 @@ class BandCoder : private MacroblockPlace {
  private:
   void code_macroblock() {
     task_.macroblocks[address()] = {};
-    for (Attempt& attempt : attempts_) attempt.quantizer = static_cast<uint8_t>(quantizer());
+    if (column_ == 0 && row_ % task_.slice_rows == 0) last_quantizer_ = 0;
+    for (Attempt& attempt : attempts_) start(attempt, quantizer());
     const bool forced = task_.must_be_intra != nullptr && task_.must_be_intra[address()] != 0;
     if (task_.type == PictureType::I || forced) {
-      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
-      take(attempts_[0]);
+      code_intra();
     } else if (task_.effort == Effort::fast) {
       code_fast();
     } else {
       code_by_cost();
     }
+  }
+
+  void start(Attempt& attempt, int attempted_quantizer) const {
+    attempt.quantizer = static_cast<uint8_t>(attempted_quantizer);
+    attempt.lambda = lambda();
+  }
+
+  void code_intra() {
+    best_ = 0;
+    attempt_intra(task_.residual, task_.source, column_, row_, task_.vary_quantizers, attempts_[0]);
+    if (task_.vary_quantizers) {
+      least_ = intra_cost(attempts_[0]);
+      vary_quantizer();
+    }
+    take(attempts_[best_]);
   }
 
   SearchResult search() const {
@@ -151,7 +166,7 @@ class BandCoder : private MacroblockPlace {
   // Tries a vector in the attempt that is not the best one.
   void try_vector(MotionVector vector) {
     Attempt& attempt = attempts_[1 - best_];
-    attempt.quantizer = static_cast<uint8_t>(quantizer());
+    start(attempt, quantizer());
     predict(vector, attempt);
     attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
     keep_if_better(settle_inter(attempt));
@@ -169,6 +184,44 @@ class BandCoder : private MacroblockPlace {
     for (int i = 0; i < 9; ++i) {
       const int x = center.x_halfpel + i % 3 - 1, y = center.y_halfpel + i / 3 - 1;
       if (i != 4 && reach.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)});
+    }
+  }
+
+  // ---- The quantizer -----------------------------------------------------------------------------------------------
+
+  // Bits of another quantizer than the last one's: its five, and a longer type [table B.2].
+  int quantizer_bits(const Attempt& attempt) const {
+    const bool is_intra = attempt.kind == MacroblockKind::intra;
+    const bool is_coded = is_intra || attempt.pattern != 0;
+    if (!is_coded || last_quantizer_ == 0 || attempt.quantizer == last_quantizer_) return 0;
+    if (is_intra) return 6;
+    return attempt.vector != MotionVector{} ? 9 : 8;
+  }
+
+  // The best attempt again with other quantizers, at the same lambda.
+  void vary_quantizer() {
+    const int nominal = quantizer();
+    least_ += lambda() * quantizer_bits(attempts_[best_]);
+    const bool last_is_near = 4 * std::abs(last_quantizer_ - nominal) <= std::max(4, nominal);
+    const int wanted[3] = {last_quantizer_ != 0 && last_is_near ? last_quantizer_ : nominal, nominal - 1, nominal + 1};
+    for (int i = 0; i < 3; ++i) {
+      const bool is_new = wanted[i] != nominal && (i == 0 || wanted[i] != wanted[0]);
+      const Attempt& best = attempts_[best_];
+      if (!is_new || wanted[i] < 1 || wanted[i] > 31 || (best.kind == MacroblockKind::inter && best.pattern == 0))
+        continue;
+      Attempt& attempt = attempts_[1 - best_];
+      start(attempt, wanted[i]);
+      int64_t cost = 0;
+      if (best.kind == MacroblockKind::intra) {
+        attempt_intra(task_.residual, task_.source, column_, row_, true, attempt);
+        cost = intra_cost(attempt);
+      } else {
+        attempt.vector = best.vector;
+        attempt.prediction = best.prediction;
+        attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
+        cost = settle_inter(attempt);
+      }
+      keep_if_better(cost + lambda() * quantizer_bits(attempt));
     }
   }
 
@@ -192,16 +245,18 @@ class BandCoder : private MacroblockPlace {
     const int64_t error = prediction_error(attempts_[best_]) / kDistortionScale;
     if (may_be_intra(static_cast<uint64_t>(error), task_.effort == Effort::best ? 8000 : 2500)) {
       Attempt& attempt = attempts_[1 - best_];
-      attempt.quantizer = static_cast<uint8_t>(quantizer());
+      start(attempt, quantizer());
       attempt_intra(task_.residual, task_.source, column_, row_, true, attempt);
       keep_if_better(intra_cost(attempt));
     }
+    if (task_.vary_quantizers) vary_quantizer();
     take(attempts_[best_]);
   }
 
   void take(const Attempt& attempt) {
     Macroblock& macroblock = task_.macroblocks[address()];
     commit(task_.residual, attempt, task_.target, column_, row_, band_.tokens, macroblock);
+    if (macroblock.kind == MacroblockKind::intra || macroblock.pattern != 0) last_quantizer_ = macroblock.quantizer;
     if (band_.statistics != nullptr) band_.statistics->add(attempt);
     if (macroblock.kind == MacroblockKind::inter && macroblock.pattern == 0 && macroblock.vector == MotionVector{} &&
         may_skip())
@@ -211,6 +266,7 @@ class BandCoder : private MacroblockPlace {
   FastCoder fast_;
   Attempt attempts_[2];
   int best_ = 0;
+  int last_quantizer_ = 0;  // of the last macroblock with coefficients in the slice and the band; 0: none
   int64_t least_ = 0;
 };
 

@@ -20,6 +20,7 @@ struct PictureTask {
   int columns = 0, rows = 0, slice_rows = 0;
   Planes source, reference, target;              // target: the reconstruction
   const uint8_t* quantizers = nullptr;           // of each macroblock, raster order
+  bool vary_quantizers = false;                  // where another one costs less
   const MotionVector* last_vectors = nullptr;    // of the picture before, or null
   const MotionVector* coarse_vectors = nullptr;  // of each 2 x 2 macroblocks, coarse_columns a row, or null
   int coarse_columns = 0;

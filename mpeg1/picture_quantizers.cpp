@@ -21,6 +21,13 @@ double mix(double a, double b, double share) {
   return a + (b - a) * share;
 }
 
+// Without changes that are not worth their bits: `before` stays while it is near what is wanted.
+int keep_or_change(int before, double wanted) {
+  constexpr double kLeastChange = 0.7, kLeastShare = 0.12;
+  const int rounded = std::clamp(static_cast<int>(std::floor(wanted + 0.5)), 1, 31);
+  return before != 0 && std::abs(wanted - before) < std::max(kLeastChange, kLeastShare * wanted) ? before : rounded;
+}
+
 }  // namespace
 
 void Encoder::State::make_lambdas() {
@@ -50,10 +57,13 @@ double Encoder::State::intra_scale(size_t macroblock) const {
 double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
   const bool is_free = !has_rate && picture.quantizer_scale == 0;
   double sum = 0;
+  int before = 0;
   for (size_t i = 0; i < quantizers.size(); ++i) {
     const double wanted = type == PictureType::I && is_free ? scale * intra_scale(i) : scale;
     const double position = (static_cast<double>(i) + 0.5) / static_cast<double>(quantizers.size());
-    quantizers[i] = static_cast<uint8_t>(std::clamp(static_cast<int>(std::floor(wanted + position)), 1, 31));
+    before = is_free && type == PictureType::I ? keep_or_change(before, wanted + position - 0.5)
+                                               : std::clamp(static_cast<int>(std::floor(wanted + position)), 1, 31);
+    quantizers[i] = static_cast<uint8_t>(before);
     if (!picture.quantizer_map.empty()) quantizers[i] = picture.quantizer_map[i];
     sum += quantizers[i];
   }

@@ -111,7 +111,7 @@ void attempt_intra(const ResidualTask& task, const Planes& source, int column, i
   divide(task.kernels->block, *task.intra, 1, attempt);
   BlockToQuantize block;
   block.weight = task.intra->weight[attempt.quantizer];
-  block.lambda = task.lambda[attempt.quantizer];
+  block.lambda = attempt.lambda;
   block.first_position = 1;
   block.is_intra = true;
   for (int i = 0; i < kBlocks; ++i) {
@@ -136,7 +136,7 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
   divide(task.kernels->block, *task.non_intra, 0, attempt);
   BlockToQuantize block;
   block.weight = task.non_intra->weight[attempt.quantizer];
-  block.lambda = task.lambda[attempt.quantizer];
+  block.lambda = attempt.lambda;
   for (int i = 0; i < kBlocks; ++i) {
     block.dct = attempt.dct + 64 * i;
     const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);

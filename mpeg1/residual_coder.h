@@ -24,6 +24,7 @@ struct Attempt {
   MacroblockKind kind = MacroblockKind::inter;
   uint8_t pattern = 0;
   uint8_t quantizer = 1;
+  int64_t lambda = 0;  // a bit in units of distortion
   MotionVector vector;
   int16_t dc[kBlocks] = {};                  // quantized, of intra
   alignas(64) int16_t dct[kBlocks * 64];     // natural order, times 8
@@ -39,12 +40,12 @@ struct ResidualTask {
   const Kernels* kernels = nullptr;
   const QuantizerSet* intra = nullptr;
   const QuantizerSet* non_intra = nullptr;
-  const int64_t* lambda = nullptr;  // by quantizer_scale: a bit in units of distortion
+  const int64_t* lambda = nullptr;  // by the quantizer_scale that was asked for, see Attempt
   LevelChoice choice = LevelChoice::drop_small;
 };
 
-// Both take `source` at (column, row) and attempt.quantizer, which they raise where a level would have no code.
-// `with_cost`: distortion and bits are wanted.
+// Both take `source` at (column, row), attempt.lambda and attempt.quantizer, which they raise where a level would have
+// no code. `with_cost`: distortion and bits are wanted.
 void attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
                    Attempt& attempt);
 // attempt.prediction holds the prediction. Blocks left out of the pattern count with their whole error.
