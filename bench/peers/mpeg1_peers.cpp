@@ -1,7 +1,8 @@
 // Our MPEG-1 encoder and decoder beside libavcodec and libmpeg2, in one run, one thread, CPU time, in memory.
 //   build/release/bench/peers/mpeg1_peers clip.y4m...
 // Prints, for each clip, bytes, PSNR and speed at four quantizers, BD-rates (PSNR of luma against bytes) relative to
-// libavcodec's default, and decoding speed of each stream by each decoder with ratios.
+// libavcodec's default, and decoding speed of each stream by each decoder with ratios; at the end a table for each size
+// of pictures. mpeg1_clips.sh makes clips of 640x480 and 1280x720.
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavutil/opt.h>
@@ -19,11 +20,13 @@ extern "C" {
 #include "base/file_io.h"
 #include "base/metrics.h"
 #include "base/y4m.h"
+#include "bench/peers/bd_rate.h"
 #include "mpeg1/mpeg1.h"
 
 namespace {
 
 using namespace pac;
+using namespace pac::bench;
 
 constexpr int kQuantizers[] = {2, 4, 8, 16};
 constexpr int kGroup = 15;
@@ -231,13 +234,6 @@ Timing decode_libmpeg2(std::vector<uint8_t> bytes) {
   return timing;
 }
 
-// ---- Bjontegaard's rate difference, with monotone cubic interpolation
-// ------------------------------------------------
-
-struct Curve {
-  std::vector<double> psnr_db, log_rate;  // ascending in PSNR
-};
-
 Curve curve_of(std::vector<Coded>& points) {
   std::sort(points.begin(), points.end(), [](const Coded& a, const Coded& b) { return a.psnr_db < b.psnr_db; });
   Curve curve;
@@ -246,36 +242,6 @@ Curve curve_of(std::vector<Coded>& points) {
     curve.log_rate.push_back(std::log(static_cast<double>(point.bytes.size())));
   }
   return curve;
-}
-
-// Fritsch and Carlson's slopes, then Hermite's cubic.
-double interpolate(const Curve& c, double x) {
-  const size_t n = c.psnr_db.size();
-  std::vector<double> secant(n - 1), slope(n);
-  for (size_t i = 0; i + 1 < n; ++i)
-    secant[i] = (c.log_rate[i + 1] - c.log_rate[i]) / (c.psnr_db[i + 1] - c.psnr_db[i]);
-  slope[0] = secant[0];
-  slope[n - 1] = secant[n - 2];
-  for (size_t i = 1; i + 1 < n; ++i)
-    slope[i] = secant[i - 1] * secant[i] <= 0 ? 0 : 2 / (1 / secant[i - 1] + 1 / secant[i]);
-  size_t i = 0;
-  while (i + 2 < n && x > c.psnr_db[i + 1]) ++i;
-  const double h = c.psnr_db[i + 1] - c.psnr_db[i], t = (x - c.psnr_db[i]) / h;
-  return c.log_rate[i] * (1 + 2 * t) * (1 - t) * (1 - t) + slope[i] * h * t * (1 - t) * (1 - t) +
-         c.log_rate[i + 1] * t * t * (3 - 2 * t) + slope[i + 1] * h * t * t * (t - 1);
-}
-
-// Percent of bytes more (or less) than `base` for the same PSNR.
-double bd_rate(const Curve& base, const Curve& test) {
-  const double low = std::max(base.psnr_db.front(), test.psnr_db.front());
-  const double high = std::min(base.psnr_db.back(), test.psnr_db.back());
-  double sum = 0;
-  constexpr int kSteps = 200;
-  for (int i = 0; i < kSteps; ++i) {
-    const double x = low + (high - low) * (i + 0.5) / kSteps;
-    sum += interpolate(test, x) - interpolate(base, x);
-  }
-  return 100 * (std::exp(sum / kSteps) - 1);
 }
 
 // ---- Tables --------------------------------------------------------------------------------------------------------
@@ -306,7 +272,8 @@ double total_seconds(const Contender& contender) {
   return sum;
 }
 
-void compare_decoders(const Clip& clip, const Contender& contender) {
+std::vector<double> compare_decoders(const Clip& clip, const Contender& contender) {
+  std::vector<double> ratios;
   for (const Coded& point : contender.points) {
     const std::vector<uint8_t>& bytes = point.bytes;
     double best[3] = {1e9, 1e9, 1e9};
@@ -323,7 +290,9 @@ void compare_decoders(const Clip& clip, const Contender& contender) {
                 static_cast<double>(bytes.size()) * 8 * 30 / n / 1e6, n / best[0], n / best[1], n / best[2],
                 std::min(best[1], best[2]) / best[0],
                 pictures[0] == static_cast<int>(clip.size()) ? "" : "  (pictures differ)");
+    ratios.push_back(std::min(best[1], best[2]) / best[0]);
   }
+  return ratios;
 }
 
 Clip read_clip(const std::string& path) {
@@ -339,12 +308,26 @@ Clip read_clip(const std::string& path) {
   }
 }
 
-void compare(const std::string& path, bool with_slow_peers) {
+// What the table at the end says of a clip: by contender after libavcodec's default.
+struct Row {
+  std::string clip;
+  int width = 0, height = 0;
+  std::vector<std::string> names;
+  std::vector<double> bd_percent, speed;
+  std::vector<double> decoding;  // our speed to the faster peer's, by quantizer
+};
+
+Row compare(const std::string& path, bool with_slow_peers) {
+  Row row;
   const Clip clip = read_clip(path);
   if (clip.empty()) {
     std::printf("%s: no clip\n", path.c_str());
-    return;
+    return row;
   }
+  const size_t slash = path.rfind('/');
+  row.clip = slash == std::string::npos ? path : path.substr(slash + 1);
+  row.width = clip[0].width();
+  row.height = clip[0].height();
   std::printf("%s: %zu frames of %dx%d\n", path.c_str(), clip.size(), clip[0].width(), clip[0].height());
   std::vector<Contender> all;
   const auto av = [&](const AvSetting& setting) {
@@ -361,12 +344,45 @@ void compare(const std::string& path, bool with_slow_peers) {
   all.push_back(ours("pac fast", mpeg1::Effort::fast));
   all.push_back(ours("pac default", mpeg1::Effort::normal));
   all.push_back(ours("pac best", mpeg1::Effort::best));
-  compare_decoders(clip, all[0]);
+  row.decoding = compare_decoders(clip, all[0]);
   const double base_seconds = total_seconds(all[0]);
   const Curve base = curve_of(all[0].points);
-  for (size_t i = 1; i < all.size(); ++i)
+  for (size_t i = 1; i < all.size(); ++i) {
+    row.names.push_back(all[i].name);
+    row.bd_percent.push_back(bd_rate(base, curve_of(all[i].points)));
+    row.speed.push_back(base_seconds / total_seconds(all[i]));
     std::printf("  %-22s BD-rate %+6.2f %%  speed x%.2f of libavcodec's default\n", all[i].name.c_str(),
-                bd_rate(base, curve_of(all[i].points)), base_seconds / total_seconds(all[i]));
+                row.bd_percent.back(), row.speed.back());
+  }
+  return row;
+}
+
+// Markdown: one line a clip, sizes apart.
+void print_table(const std::vector<Row>& rows, int width, int height) {
+  bool has_head = false;
+  for (const Row& row : rows) {
+    if (row.width != width || row.height != height) continue;
+    if (!has_head) {
+      std::printf("\n| %dx%d |", width, height);
+      for (const std::string& name : row.names) std::printf(" %s |", name.c_str());
+      std::printf(" decoding |\n| --- |");
+      for (size_t i = 0; i <= row.names.size(); ++i) std::printf(" --- |");
+      has_head = true;
+    }
+    std::printf("\n| %s |", row.clip.c_str());
+    for (size_t i = 0; i < row.names.size(); ++i) std::printf(" %+.1f %% x%.2f |", row.bd_percent[i], row.speed[i]);
+    for (const double ratio : row.decoding) std::printf(" %.2f", ratio);
+    std::printf(" |");
+  }
+  std::printf("\n");
+}
+
+void print_tables(const std::vector<Row>& rows) {
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const auto same = [&](const Row& row) { return row.width == rows[i].width && row.height == rows[i].height; };
+    if (std::find_if(rows.begin(), rows.end(), same) - rows.begin() == static_cast<ptrdiff_t>(i))
+      print_table(rows, rows[i].width, rows[i].height);
+  }
 }
 
 }  // namespace
@@ -374,12 +390,15 @@ void compare(const std::string& path, bool with_slow_peers) {
 int main(int argc, char** argv) {
   av_log_set_level(AV_LOG_ERROR);
   bool with_slow_peers = true;
+  std::vector<Row> rows;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--quick") == 0)
       with_slow_peers = false;
     else
-      compare(argv[i], with_slow_peers);
+      rows.push_back(compare(argv[i], with_slow_peers));
+    if (!rows.empty() && rows.back().names.empty()) rows.pop_back();
   }
+  print_tables(rows);
   if (argc < 2)
     std::printf("usage: mpeg1_peers [--quick] CLIP.y4m...   (--quick: without libavcodec's slow settings)\n");
   return 0;
