@@ -9,8 +9,8 @@
 namespace pac::mpeg1 {
 namespace {
 
-// Below it (an error of 2 a sample) a good intra macroblock does not pay.
-constexpr uint32_t kLeastIntraSad = 512;
+// Below it no variation of a macroblock is small enough for may_be_intra.
+constexpr uint32_t kLeastIntraSad = 836;
 constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pattern longer, about
 
 }  // namespace

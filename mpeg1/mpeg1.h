@@ -92,7 +92,8 @@ struct SequenceOptions {
   bool scene_cuts = false;    // an I picture instead of a P picture where the scene changes
   bool intra_refresh = true;  // each macroblock intra at least once in 132 predicted codings [2.4.4.2]
   std::optional<QuantizerMatrix> intra_matrix, non_intra_matrix;  // absent: default
-  // Later groups begin with matrices that suit the coefficients of the groups before. Not at Effort::fast.
+  // Later groups begin with matrices that suit the coefficients of the groups before. Not at Effort::fast, and not for
+  // players that read the first sequence header only, as jsmpeg does.
   bool adapt_matrices = false;
   Limits limits;
 };

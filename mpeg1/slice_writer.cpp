@@ -100,8 +100,7 @@ class BandWriter {
     if (moves) flags |= kForward;
     if (macroblock.kind == MacroblockKind::inter && macroblock.pattern != 0) flags |= kPattern;
     if (quant) flags |= kQuant;
-    for (const MacroblockType& type : kTypesOfP)
-      if (type.flags == flags) put(type.code);
+    put(kWriting.type_of_p[flags]);
   }
   // Without coefficients a macroblock that may not be skipped has a vector, even zero.
   static bool uses_vector(const Macroblock& macroblock) {

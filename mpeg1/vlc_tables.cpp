@@ -157,6 +157,7 @@ constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
 
 constexpr WritingTables make_writing_tables() {
   WritingTables tables{};
+  for (const MacroblockType& type : kTypesOfP) tables.type_of_p[type.flags] = type.code;
   for (auto& row : tables.bits)
     for (uint8_t& bits : row) bits = 20;
   for (const RunLevelCode& entry : kRunLevelCodes) {

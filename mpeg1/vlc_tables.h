@@ -82,6 +82,7 @@ extern const ReadingTables kReading;
 constexpr int kTokenRuns = 32, kTokenLevels = 64;
 
 struct WritingTables {
+  std::array<Code, 32> type_of_p;  // macroblock_type [table B.2b] by its flags
   // dct_coeff_next with the sign, escapes included: code << 5 | length at [run][level + kTokenLevels]; level 0:
   // nothing.
   std::array<std::array<uint32_t, 2 * kTokenLevels>, kTokenRuns> token;
