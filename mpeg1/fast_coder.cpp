@@ -104,40 +104,50 @@ FastCoder::Outcome FastCoder::code_errors() {
   return Outcome::done;
 }
 
-// Levels of 1 that do not pay are left out, then the block if what is left does not. False: a level has no code.
+// Levels of 1 that do not pay are left out, then those after the place where the block had better end, if only at its
+// beginning. False: a level has no code.
 bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero) {
   const int16_t* dct = dct_ + 64 * block;
   const uint16_t* weight = task_.residual.non_intra->weight[quantizer()];
   const int64_t bit = lambda();
   Token* tokens = coded_.tokens + coded_.n_tokens;
   int16_t* coefficients = coded_.coefficients + 64 * coded_.n_blocks;
+  uint8_t places[64];  // of the tokens, natural order
   std::memset(coefficients, 0, 64 * sizeof *coefficients);
-  int last = -1, count = 0, bits = kEndOfBlock.length + kPatternBits;
-  int64_t gain = 0;
+  struct Prefix {
+    int count = 0, bits = kEndOfBlock.length + kPatternBits;
+    int64_t gain = 0, saved = 0;  // gain less what the bits are worth
+  } all, best;
+  int last = -1;
   for (; nonzero != 0; nonzero &= nonzero - 1) {
     const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
     const int level = levels[position], magnitude = level < 0 ? -level : level;
     if (magnitude > kMaxLevel) return false;
     const int c = dct[natural] < 0 ? -dct[natural] : dct[natural];
     const int value = reconstruct_non_intra(magnitude, weight[position]);
-    if (value == 0) continue;                                        // decoders disagree about it
-    const int64_t saved = int64_t{8 * value} * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
+    if (value == 0) continue;                                       // decoders disagree about it
+    const int64_t gain = int64_t{8 * value} * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
     const int run = position - last - 1;
-    const int spent = run_level_bits(run, magnitude) - (count == 0 && run == 0 && magnitude == 1 ? 1 : 0);
-    if (magnitude == 1 && saved <= bit * spent) continue;
-    gain += saved;
-    bits += spent;
-    tokens[count++] = make_token(run, level);
+    const bool is_short = all.count == 0 && run == 0 && magnitude == 1;  // dct_coeff_first
+    const int bits = run_level_bits(run, magnitude) - (is_short ? 1 : 0);
+    if (magnitude == 1 && gain <= bit * bits) continue;
+    all.gain += gain;
+    all.bits += bits;
+    all.saved = all.gain - bit * all.bits;
+    places[all.count] = static_cast<uint8_t>(natural);
+    tokens[all.count++] = make_token(run, level);
     coefficients[natural] = static_cast<int16_t>(level < 0 ? -value : value);
     last = position;
+    if (all.saved > best.saved) best = all;
   }
-  if (count == 0 || gain <= bit * bits) return true;
-  coded_.is_flat[coded_.n_blocks] = last == 0;
+  if (best.count == 0) return true;
+  for (int i = best.count; i < all.count; ++i) coefficients[places[i]] = 0;
+  coded_.is_flat[coded_.n_blocks] = best.count == 1 && places[0] == 0;
   coded_.order[coded_.n_blocks++] = static_cast<uint8_t>(block);
-  coded_.n_tokens += count;
-  coded_.counts[block] = static_cast<uint8_t>(count);
-  coded_.bits += bits - kPatternBits;
-  coded_.gain += gain;
+  coded_.n_tokens += best.count;
+  coded_.counts[block] = static_cast<uint8_t>(best.count);
+  coded_.bits += best.bits - kPatternBits;
+  coded_.gain += best.gain;
   coded_.pattern = static_cast<uint8_t>(coded_.pattern | 32 >> block);
   return true;
 }

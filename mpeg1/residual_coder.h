@@ -16,7 +16,7 @@ constexpr int kBlocks = 6;  // of a macroblock: four of luma, Cb, Cr
 
 // How levels are chosen after the division.
 enum class LevelChoice : uint8_t {
-  drop_small,  // levels of 1 that do not pay are dropped
+  drop_small,  // levels of 1 that do not pay are dropped, and ends of blocks
   trellis,     // every level may be one less or nothing
 };
 

@@ -111,24 +111,23 @@ BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64
 }
 
 void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
-  int last = block.first_position - 1;
+  int last = block.first_position - 1, end = last;  // the block had better end after `end`
   uint64_t kept = 0;
+  int64_t saved = 0, most_saved = 0;
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
-    const int position = std::countr_zero(mask);
-    const int level = magnitude_of(levels[position]);
+    const int position = std::countr_zero(mask), level = magnitude_of(levels[position]);
     const int64_t r = 8 * int64_t{reconstruct(block, level, position)};
-    bool pays = r != 0;  // decoders disagree about such levels
-    if (pays && level == 1) {
-      const int64_t c = coefficient(block, position);
-      pays = r * (2 * c - r) > block.lambda * run_level_bits(position - last - 1, 1);  // c^2 - (c - r)^2
-    }
-    if (!pays) {
-      levels[position] = 0;
-      continue;
-    }
+    const int64_t c = coefficient(block, position);
+    const int64_t paid = r * (2 * c - r) -  // c^2 - (c - r)^2
+                         block.lambda * run_level_bits(position - last - 1, level);
+    if (r == 0 || (level == 1 && paid <= 0)) continue;  // of r = 0 decoders make different things
+    saved += paid;
     kept |= uint64_t{1} << position;
     last = position;
+    if (saved > most_saved) most_saved = saved, end = position;
   }
+  kept &= end < 0 ? 0 : ~uint64_t{0} >> (63 - end);
+  for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
   nonzero = kept;
 }
 

@@ -32,7 +32,7 @@ int64_t energy(const BlockToQuantize& block);
 // lambda * bits over all choices of each level, the next smaller one or zero. Dynamic programming over positions.
 BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
 
-// One pass: levels of 1 that cost more than they save become zero.
+// One pass: levels of 1 that cost more than they save become zero, and those after the best place to end the block.
 void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
 
 // What these levels cost.
