@@ -112,7 +112,7 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
   const int64_t bit = lambda();
   Token* tokens = coded_.tokens + coded_.n_tokens;
   int16_t* coefficients = coded_.coefficients + 64 * coded_.n_blocks;
-  uint8_t places[64];  // of the tokens, natural order
+  uint8_t places[64] = {};  // of the tokens, natural order
   std::memset(coefficients, 0, 64 * sizeof *coefficients);
   struct Prefix {
     int count = 0, bits = kEndOfBlock.length + kPatternBits;
