@@ -1,9 +1,11 @@
 #include "jpeg/band_decoder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <numeric>
 
+#include "jpeg/bands.h"
 #include "jpeg/markers.h"
 
 namespace pac::jpeg {
@@ -39,19 +41,20 @@ bool BandDecoder::find_all_restarts(const BandedScan& job) {
 }
 
 void BandDecoder::split(const BandedScan& job, int n_threads, const Kernels& kernels) {
-  constexpr int kBandsPerThread = 8;  // their work differs
   const Scan& scan = *job.scan;
   const int period = period_rows(scan), n_periods = ceil_div(scan.mcu_rows, period);
-  const int n_bands = std::min(n_periods, kBandsPerThread * n_threads);
-  while (bands_.size() < static_cast<size_t>(n_bands)) bands_.emplace_back(kernels);
-  bands_.erase(bands_.begin() + n_bands, bands_.end());
-  for (int i = 0; i < n_bands; ++i) {
-    Band& band = bands_[static_cast<size_t>(i)];
-    band.first_row = static_cast<int>(int64_t{n_periods} * i / n_bands) * period;
-    band.end_row = std::min(static_cast<int>(int64_t{n_periods} * (i + 1) / n_bands) * period, scan.mcu_rows);
+  size_t n_bands = 0;
+  for (int done = 0; done < n_periods; ++n_bands) {
+    if (n_bands == bands_.size()) bands_.emplace_back(kernels);
+    Band& band = bands_[n_bands];
+    band.first_row = done * period;
     band.first_interval = int64_t{band.first_row} * scan.mcus_per_row / scan.restart_interval;
+    done += next_band(n_periods - done, n_periods, n_threads);
+    band.end_row = std::min(done * period, scan.mcu_rows);
     band.sound = false;
+    band.n_sides_done = 0;
   }
+  bands_.erase(bands_.begin() + static_cast<ptrdiff_t>(n_bands), bands_.end());
   // Costliest first: the last thread to finish then has little left to do. Bytes tell most of what a band takes.
   order_.resize(bands_.size());
   std::iota(order_.begin(), order_.end(), size_t{0});
@@ -91,17 +94,23 @@ bool BandDecoder::ends_well(const BandedScan& job, const Band& band) const {
   return end <= marker && job.bytes[end] == 0xFF && find_marker(job.bytes, end) == marker;
 }
 
-void BandDecoder::decode_band(const BandedScan& job, Band& band, const Kernels& kernels, RgbView out) const {
+// Of two neighbors the one that is done last makes their seam.
+void BandDecoder::decode_band(const BandedScan& job, size_t i, const Kernels& kernels, RgbView out) {
+  Band& band = bands_[i];
   Damage damage;
-  band.planes.reset(*job.frame, false, job.color, kernels);
+  band.planes.reset_ring(*job.frame, job.color, kernels);
   band.mcus.start(job.bytes, *job.scan, offset_of(job, band), damage, band.first_interval);
   band.sound = decode_rows(job, band, damage, out) && ends_well(job, band);
+  if (!band.sound) return;
+  for (size_t below = std::max<size_t>(i, 1); below <= std::min(i + 1, bands_.size() - 1); ++below)
+    if (std::atomic_ref(bands_[below].n_sides_done).fetch_add(1) == 1)
+      write_seam(job, bands_[below - 1], bands_[below], kernels, out);
 }
 
 void BandDecoder::write_seam(const BandedScan& job, Band& above, Band& below, const Kernels& kernels,
                              RgbView out) const {
   ComponentPlanes& seam = below.seam;
-  seam.reset(*job.frame, false, job.color, kernels);
+  seam.reset_ring(*job.frame, job.color, kernels);
   for (int c = 0; c < job.frame->n_components; ++c) {
     const int first = below.first_row * rows_of_blocks(job, c);
     const ptrdiff_t stride = seam.stride(c), last = 7 * stride;
@@ -119,13 +128,9 @@ std::optional<uint64_t> BandDecoder::decode(const BandedScan& job, ThreadPool& p
   if (scan.restart_interval == 0 || period_rows(scan) >= scan.mcu_rows || !find_all_restarts(job)) return {};
   split(job, pool.thread_count(), kernels);
   pool.for_each(static_cast<int64_t>(bands_.size()),
-                [&](int64_t i) { decode_band(job, bands_[order_[static_cast<size_t>(i)]], kernels, out); });
+                [&](int64_t i) { decode_band(job, order_[static_cast<size_t>(i)], kernels, out); });
   for (const Band& band : bands_)
     if (!band.sound) return {};
-  pool.for_each(static_cast<int64_t>(bands_.size()) - 1, [&](int64_t i) {
-    const auto above = static_cast<size_t>(i);
-    write_seam(job, bands_[above], bands_[above + 1], kernels, out);
-  });
   return bands_.back().mcus.byte_offset();
 }
 

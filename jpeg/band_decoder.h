@@ -37,13 +37,14 @@ class BandDecoder {
     McuDecoder mcus;
     ComponentPlanes planes;
     ComponentPlanes seam;                      // with the band above
+    int n_sides_done = 0;                      // of the seam; atomic while threads run
     std::vector<uint8_t> top[kMaxComponents];  // its first row of samples, for the band above
   };
 
   bool find_all_restarts(const BandedScan& job);
   void split(const BandedScan& job, int n_threads, const Kernels& kernels);
   uint64_t offset_of(const BandedScan& job, const Band& band) const;
-  void decode_band(const BandedScan& job, Band& band, const Kernels& kernels, RgbView out) const;
+  void decode_band(const BandedScan& job, size_t i, const Kernels& kernels, RgbView out);
   bool decode_rows(const BandedScan& job, Band& band, Damage& damage, RgbView out) const;
   bool ends_well(const BandedScan& job, const Band& band) const;
   void write_seam(const BandedScan& job, Band& above, Band& below, const Kernels& kernels, RgbView out) const;

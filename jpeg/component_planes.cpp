@@ -69,11 +69,19 @@ ComponentPlanes::Upsampling ComponentPlanes::choose(const Component& c) const {
   return Upsampling::nearest;
 }
 
-void ComponentPlanes::reset(const Frame& frame, bool whole_image, ColorModel color, const Kernels& kernels) {
-  reset(scaled_frame(frame, 1), whole_image, color, kernels);
+void ComponentPlanes::reset_ring(const Frame& frame, ColorModel color, const Kernels& kernels) {
+  set_up(scaled_frame(frame, 1), false, color, kernels);
+  for (int i = 0; i < frame.n_components; ++i) planes_[i].samples.resize(planes_[i].size());
 }
 
 void ComponentPlanes::reset(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels) {
+  set_up(scaled, whole_image, color, kernels);
+  // 128 is what a block of zero coefficients decodes to.
+  for (int i = 0; i < scaled.frame.n_components; ++i) planes_[i].samples.assign(planes_[i].size(), 128);
+}
+
+// All but the samples.
+void ComponentPlanes::set_up(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels) {
   const Frame& frame = scaled.frame;
   frame_ = frame;
   mcu_width_ = scaled.mcu_width();
@@ -88,8 +96,6 @@ void ComponentPlanes::reset(const ScaledFrame& scaled, bool whole_image, ColorMo
     plane.stride = plane_stride(scaled, i);
     plane.n_rows = plane_rows(scaled, i, whole_image);
     plane.upsampling = choose(c);
-    // 128 is what a block of zero coefficients decodes to.
-    plane.samples.assign(static_cast<size_t>(plane.stride) * static_cast<size_t>(plane.n_rows), 128);
     upsampled_[i].resize(static_cast<size_t>(frame.mcus_per_row) * 8 * static_cast<size_t>(frame.h_max) + 2);
   }
 }

@@ -20,8 +20,9 @@ class ComponentPlanes {
   static uint64_t size_bytes(const Frame& frame, bool whole_image);
   static uint64_t size_bytes(const ScaledFrame& scaled, bool whole_image);
   // Keeps its buffers from image to image when they suffice.
-  void reset(const Frame& frame, bool whole_image, ColorModel color, const Kernels& kernels);
   void reset(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels);
+  // Two MCU rows, or one of a picture that has no more; their samples are not set.
+  void reset_ring(const Frame& frame, ColorModel color, const Kernels& kernels);
 
   // Only the MCU columns [first, end) count: write_rgb() and gray_row() act as if the picture consisted of those (their
   // outermost pixels next to other columns differ). After reset().
@@ -52,11 +53,13 @@ class ComponentPlanes {
     int block_size = 8;
     ptrdiff_t first = 0;  // column where the rows begin: see narrow()
     Upsampling upsampling = Upsampling::none;
+    size_t size() const { return static_cast<size_t>(stride) * static_cast<size_t>(n_rows); }
   };
   uint8_t* row(int c, int y) {
     Plane& plane = planes_[c];
     return plane.samples.data() + (y % plane.n_rows) * plane.stride + plane.first;
   }
+  void set_up(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels);
   Upsampling choose(const Component& c) const;
   const uint8_t* full_row(int c, int y);
   bool is_plain_420() const;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/kernels/kernels.h"
+#include "jpeg/bands.h"
 #include "jpeg/marker_writer.h"
 #include "jpeg/metadata.h"
 #include "jpeg/quantizer.h"
@@ -69,26 +70,24 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
   return {};
 }
 
-// Bands begin where a restart marker stands at the start of a row: predictions and bits begin anew there. Some more
-// than there are threads: their work differs.
+// Bands begin where a restart marker stands at the start of a row: predictions and bits begin anew there.
 void ImageEncoder::split(const Frame& frame) {
-  constexpr int kBandsPerThread = 8;
-  const int n_threads = options_.threads == 0 ? hardware_thread_count() : options_.threads;
   const int interval = options_.restart_interval_mcus;
-  int n_bands = 1, period = frame.mcu_rows;
-  if (n_threads > 1 && interval > 0) {
-    period = interval / std::gcd(interval, frame.mcus_per_row);
-    n_bands = std::min(ceil_div(frame.mcu_rows, period), kBandsPerThread * n_threads);
-  }
-  bands_.resize(static_cast<size_t>(n_bands));
-  order_.resize(bands_.size());
-  std::iota(order_.begin(), order_.end(), size_t{0});
+  int n_threads = options_.threads == 0 ? hardware_thread_count() : options_.threads, period = frame.mcu_rows;
+  if (interval > 0) period = interval / std::gcd(interval, frame.mcus_per_row);
   const int n_periods = ceil_div(frame.mcu_rows, period);
-  for (int i = 0; i < n_bands; ++i) {
-    Band& band = bands_[static_cast<size_t>(i)];
-    band.first_row = static_cast<int>(int64_t{n_periods} * i / n_bands) * period;
-    band.end_row = std::min(static_cast<int>(int64_t{n_periods} * (i + 1) / n_bands) * period, frame.mcu_rows);
+  if (n_periods == 1) n_threads = 1;
+  size_t n_bands = 0;
+  for (int done = 0; done < n_periods; ++n_bands) {
+    if (n_bands == bands_.size()) bands_.emplace_back();
+    Band& band = bands_[n_bands];
+    band.first_row = done * period;
+    done += n_threads == 1 ? n_periods : next_band(n_periods - done, n_periods, n_threads);
+    band.end_row = std::min(done * period, frame.mcu_rows);
   }
+  bands_.resize(n_bands);
+  order_.resize(n_bands);
+  std::iota(order_.begin(), order_.end(), size_t{0});
   if (n_bands > 1 && (!pool_ || pool_->thread_count() != n_threads)) pool_.emplace(n_threads);
 }
 

@@ -145,7 +145,7 @@ struct Gain {
 };
 template <class Fn>
 Gain gain_of_two(Fn&& run) {
-  constexpr int kRuns = 15;
+  constexpr int kRuns = 40;
   double wall[2] = {1e9, 1e9}, cpu[2] = {1e9, 1e9};
   for (int i = 0; i < kRuns; ++i) {
     for (const int threads : {1, 2}) {
