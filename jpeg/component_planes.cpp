@@ -1,6 +1,7 @@
 #include "jpeg/component_planes.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace pac::jpeg {
 namespace {
@@ -95,6 +96,8 @@ void ComponentPlanes::set_up(const ScaledFrame& scaled, bool whole_image, ColorM
     plane.first = 0;
     plane.stride = plane_stride(scaled, i);
     plane.n_rows = plane_rows(scaled, i, whole_image);
+    // Divisions, five a row, would be a tenth of what a small picture takes.
+    plane.row_mask = whole_image ? -1 : std::has_single_bit(static_cast<uint32_t>(plane.n_rows)) ? plane.n_rows - 1 : 0;
     plane.upsampling = choose(c);
     upsampled_[i].resize(static_cast<size_t>(frame.mcus_per_row) * 8 * static_cast<size_t>(frame.h_max) + 2);
   }
@@ -155,8 +158,9 @@ void ComponentPlanes::write_420_row(int y, uint8_t* rgb) {
 void ComponentPlanes::write_rgb(int y_begin, int y_end, RgbView out) {
   const int n = frame_.width;
   const auto size = static_cast<size_t>(n);
+  const bool is_420 = is_plain_420();
   for (int y = y_begin; y < y_end; ++y) {
-    if (is_plain_420()) {
+    if (is_420) {
       write_420_row(y, out.row(y));
       continue;
     }

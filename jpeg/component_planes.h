@@ -49,7 +49,8 @@ class ComponentPlanes {
   struct Plane {
     std::vector<uint8_t> samples;
     ptrdiff_t stride = 0;
-    int n_rows = 0;  // that `samples` holds; image row y sits in row y % n_rows
+    int n_rows = 0;    // that `samples` holds; image row y sits in row y % n_rows
+    int row_mask = 0;  // that row is y & row_mask; 0 where no mask says so
     int block_size = 8;
     ptrdiff_t first = 0;  // column where the rows begin: see narrow()
     Upsampling upsampling = Upsampling::none;
@@ -57,7 +58,8 @@ class ComponentPlanes {
   };
   uint8_t* row(int c, int y) {
     Plane& plane = planes_[c];
-    return plane.samples.data() + (y % plane.n_rows) * plane.stride + plane.first;
+    const int row = plane.row_mask != 0 ? y & plane.row_mask : y % plane.n_rows;
+    return plane.samples.data() + row * plane.stride + plane.first;
   }
   void set_up(const ScaledFrame& scaled, bool whole_image, ColorModel color, const Kernels& kernels);
   Upsampling choose(const Component& c) const;

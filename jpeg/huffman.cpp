@@ -9,15 +9,24 @@
 namespace pac::jpeg {
 namespace {
 
-HuffmanDecoder::Entry lookup_entry(uint32_t index, int code_length, uint8_t symbol) {
+// The entries whose index begins with one code, each as 4 bytes.
+void fill_entries(int code_length, uint8_t symbol, uint32_t* out) {
+  constexpr int kValueShift = std::endian::native == std::endian::little ? 0 : 16;
   const int size = symbol & 15, spare = HuffmanDecoder::kLookupBits - code_length;
-  HuffmanDecoder::Entry entry{0, symbol, static_cast<uint8_t>(code_length)};
-  if (size > 0 && size <= spare) {
-    const uint32_t bits = index >> (spare - size) & ((1u << size) - 1);
-    entry.value = static_cast<int16_t>(extend(bits, size));
-    entry.length = static_cast<uint8_t>(code_length + size);
+  const bool has_value = size > 0 && size <= spare;
+  const auto length = static_cast<uint8_t>(code_length + (has_value ? size : 0));
+  const auto entry = std::bit_cast<uint32_t>(HuffmanDecoder::Entry{0, symbol, length});
+  const uint32_t n = 1u << spare;
+  if (!has_value) {
+    std::fill_n(out, n, entry);
+    return;
   }
-  return entry;
+  const int shift = spare - size, half = 1 << (size - 1), lowest = 1 - (1 << size);
+  for (uint32_t i = 0; i < n; ++i) {
+    const auto bits = static_cast<int>(i >> shift);
+    const int value = bits < half ? bits + lowest : bits;  // EXTEND
+    out[i] = entry | (static_cast<uint32_t>(value) & 0xFFFF) << kValueShift;
+  }
 }
 
 // Whether a baseline file of 8-bit samples can hold the symbol [T.81 tables F.1, F.2].
@@ -88,18 +97,21 @@ HuffmanSpec complete_huffman(bool is_dc, std::span<const uint64_t, 256> frequenc
 
 void make_decoder(const HuffmanSpec& spec, HuffmanDecoder& decoder) {
   constexpr int kBits = HuffmanDecoder::kLookupBits;
-  std::memset(&decoder, 0, sizeof decoder);
+  uint32_t entries[1 << kBits];
   std::memcpy(decoder.symbols, spec.symbols, sizeof decoder.symbols);
   int32_t code = 0, k = 0;
   for (int length = 1; length <= kMaxCodeLength; ++length, code <<= 1) {
     decoder.offset[length] = k - code;
     for (int i = 0; i < spec.count[length]; ++i, ++code, ++k) {
       if (length > kBits) continue;
-      const uint32_t first = static_cast<uint32_t>(code) << (kBits - length), n = 1u << (kBits - length);
-      for (uint32_t j = 0; j < n; ++j) decoder.lookup[first + j] = lookup_entry(j, length, spec.symbols[k]);
+      fill_entries(length, spec.symbols[k], entries + (static_cast<size_t>(code) << (kBits - length)));
     }
     decoder.max_code[length] = spec.count[length] > 0 ? code - 1 : -1;
+    if (length == kBits) std::fill(entries + code, std::end(entries), 0u);
   }
+  std::memcpy(decoder.lookup, entries, sizeof entries);
+  decoder.offset[0] = 0;
+  decoder.max_code[0] = 0;
   decoder.max_code[kMaxCodeLength + 1] = INT32_MAX;
 }
 

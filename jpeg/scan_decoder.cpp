@@ -135,17 +135,22 @@ Result<const HuffmanDecoder*> ScanDecoder::set_up_table(const ScanHeader& header
   if (spec->n_symbols() == 0 || std::memcmp(&known, spec, sizeof known) != 0) {
     make_decoder(*spec, table);
     known = *spec;
-    if (table_class == 1) has_ac_pairs_[id] = false;
+    if (table_class == 1) {
+      has_ac_pairs_[id] = false;
+      ac_pixels_[id] = 0;
+    }
   }
   return &table;
 }
 
-// The pairs of an AC table take as long to make as some thousand blocks take to read without them.
+// The pairs of an AC table take as long to make as some thousand blocks take to read without them: of one picture, or
+// of several small ones that have the table in common.
 const AcPairs* ScanDecoder::set_up_pairs(uint8_t id) {
   constexpr int64_t kMinPixels = 512 * 512;
   const Frame& frame = reader_.headers().frame;
   if (!has_ac_pairs_[id]) {
-    if (int64_t{frame.width} * frame.height < kMinPixels) return nullptr;
+    ac_pixels_[id] += int64_t{frame.width} * frame.height;
+    if (ac_pixels_[id] < kMinPixels) return nullptr;
     make_ac_pairs(tables_[1][id], ac_pairs_[id]);
     has_ac_pairs_[id] = true;
   }

@@ -92,6 +92,7 @@ class ScanDecoder {
   HuffmanSpec table_specs_[2][4];        // that tables_ were made of
   AcPairs ac_pairs_[4];                  // made of tables_[1], where has_ac_pairs_
   bool has_ac_pairs_[4] = {};
+  int64_t ac_pixels_[4] = {};  // of the pictures that used tables_[1]
   uint16_t steps_[kMaxComponents][64] = {};
   std::vector<int16_t> levels_[kMaxComponents];
 };
