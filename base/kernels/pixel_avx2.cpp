@@ -310,10 +310,19 @@ struct EvenOdd {
 struct Upsampled {
   EvenOdd low, high;
 };
-// Reads [-1] .. [32].
-Upsampled centered_h2v2(const uint8_t* near, const uint8_t* far) {
-  const Weighted left = three_to_one(load(near - 1), load(far - 1)),
-                 right = three_to_one(load(near + 1), load(far + 1));
+// 32 samples, those before each of them, those behind: at a row's ends, its first and last one again.
+struct Neighbors {
+  __m256i here, before, behind;
+  Neighbors(const uint8_t* row, bool is_first, bool is_last) : here(load(row)) {
+    before = is_first ? _mm256_alignr_epi8(here, _mm256_permute2x128_si256(here, repeated(row[0]), 0x02), 15)
+                      : load(row - 1);
+    behind =
+        is_last ? _mm256_alignr_epi8(_mm256_permute2x128_si256(here, repeated(row[31]), 0x21), here, 1) : load(row + 1);
+  }
+  static __m256i repeated(uint8_t sample) { return _mm256_set1_epi8(static_cast<char>(sample)); }
+};
+Upsampled centered_h2v2(const Neighbors& near, const Neighbors& far) {
+  const Weighted left = three_to_one(near.before, far.before), right = three_to_one(near.behind, far.behind);
   const auto sixteenth = [](__m256i pairs, __m256i before, __m256i behind) {
     // 3 (3 near + far), rounded for the even outputs: (sum + 8) >> 4 less 128 is (sum + 8 - 2048) >> 4.
     const __m256i here =
@@ -321,9 +330,8 @@ Upsampled centered_h2v2(const uint8_t* near, const uint8_t* far) {
     const __m256i odd = _mm256_add_epi16(_mm256_add_epi16(here, behind), _mm256_set1_epi16(-1));
     return EvenOdd{_mm256_srai_epi16(_mm256_add_epi16(here, before), 4), _mm256_srai_epi16(odd, 4)};
   };
-  const __m256i nearer = load(near), farther = load(far);
-  return {sixteenth(_mm256_unpacklo_epi8(nearer, farther), left.low, right.low),
-          sixteenth(_mm256_unpackhi_epi8(nearer, farther), left.high, right.high)};
+  return {sixteenth(_mm256_unpacklo_epi8(near.here, far.here), left.low, right.low),
+          sixteenth(_mm256_unpackhi_epi8(near.here, far.here), left.high, right.high)};
 }
 
 // Pixels of eight samples of each half.
@@ -337,32 +345,26 @@ void rgb_from_upsampled(__m256i luma, const EvenOdd& u, const EvenOdd& v, uint8_
             high_rgb);
 }
 
-// 64 pixels. Reads chroma [-1] .. [32].
-void rgb_from_ycc420_step(const uint8_t* y, const uint8_t* cb_near, const uint8_t* cb_far, const uint8_t* cr_near,
-                          const uint8_t* cr_far, uint8_t* rgb) {
-  const Upsampled u = centered_h2v2(cb_near, cb_far), v = centered_h2v2(cr_near, cr_far);
+// 64 pixels from sample i of the chroma rows on; whether those begin and end there.
+void rgb_from_ycc420_step(const uint8_t* y, const uint8_t* const (&chroma)[4], size_t i, bool is_first, bool is_last,
+                          uint8_t* rgb) {
+  const auto neighbors = [&](size_t row) { return Neighbors(chroma[row] + i, is_first, is_last); };
+  const Upsampled u = centered_h2v2(neighbors(0), neighbors(1)), v = centered_h2v2(neighbors(2), neighbors(3));
   rgb_from_upsampled(load_halves(y, y + 32), u.low, v.low, rgb, rgb + 96);
   rgb_from_upsampled(load_halves(y + 16, y + 48), u.high, v.high, rgb + 48, rgb + 144);
 }
 
-// The step at sample i of a row where it lacks neighbors, or samples: with surrounded copies.
-void rgb_from_ycc420_edge(const uint8_t* y, const uint8_t* const (&chroma)[4], size_t n, size_t i, uint8_t* rgb) {
-  const size_t n_chroma = (n + 1) / 2, count = n_chroma - i < kStep ? n_chroma - i : kStep;
-  const Surrounded edges[4] = {{chroma[0], n_chroma, i, count},
-                               {chroma[1], n_chroma, i, count},
-                               {chroma[2], n_chroma, i, count},
-                               {chroma[3], n_chroma, i, count}};
-  const auto step = [&edges](const uint8_t* luma, uint8_t* out) {
-    rgb_from_ycc420_step(luma, edges[0].bytes + 1, edges[1].bytes + 1, edges[2].bytes + 1, edges[3].bytes + 1, out);
-  };
-  const size_t n_pixels = n - 2 * i < 2 * kStep ? n - 2 * i : 2 * kStep;
-  if (n_pixels == 2 * kStep) {
-    step(y + 2 * i, rgb + 6 * i);
-    return;
-  }
+// From sample i on, where less than 64 pixels are left: of copies.
+void rgb_from_ycc420_rest(const uint8_t* y, const uint8_t* const (&chroma)[4], size_t n, size_t i, uint8_t* rgb) {
+  const size_t n_chroma = (n + 1) / 2, count = n_chroma - i, n_pixels = n - 2 * i;
+  const Surrounded copies[4] = {{chroma[0], n_chroma, i, count},
+                                {chroma[1], n_chroma, i, count},
+                                {chroma[2], n_chroma, i, count},
+                                {chroma[3], n_chroma, i, count}};
+  const uint8_t* const rows[4] = {copies[0].bytes, copies[1].bytes, copies[2].bytes, copies[3].bytes};
   uint8_t luma[2 * kStep] = {}, out[6 * kStep];
   copy(luma, y + 2 * i, n_pixels);
-  step(luma, out);
+  rgb_from_ycc420_step(luma, rows, 1, false, false, out);
   copy(rgb + 6 * i, out, 3 * n_pixels);
 }
 
@@ -370,13 +372,17 @@ void rgb_from_ycc420_row(const uint8_t* y, const uint8_t* cb_near, const uint8_t
                          const uint8_t* cr_far, size_t n, uint8_t* rgb) {
   const uint8_t* const chroma[4] = {cb_near, cb_far, cr_near, cr_far};
   const size_t n_chroma = (n + 1) / 2;
-  rgb_from_ycc420_edge(y, chroma, n, 0, rgb);
-  size_t i = kStep;
-  for (; i + kStep < n_chroma; i += kStep)
-    rgb_from_ycc420_step(y + 2 * i, cb_near + i, cb_far + i, cr_near + i, cr_far + i, rgb + 6 * i);
-  if (i >= n_chroma) return;
+  size_t i = 0;
+  for (; 2 * i + 2 * kStep <= n; i += kStep)
+    rgb_from_ycc420_step(y + 2 * i, chroma, i, i == 0, i + kStep == n_chroma, rgb + 6 * i);
+  if (i == n_chroma) return;
   // The last step may begin earlier and do pixels twice, which is cheaper than to do less than a step.
-  rgb_from_ycc420_edge(y, chroma, n, n % 2 == 0 ? n_chroma - kStep : i, rgb);
+  if (i == 0 || n % 2 != 0) {
+    rgb_from_ycc420_rest(y, chroma, n, i, rgb);
+    return;
+  }
+  i = n_chroma - kStep;
+  rgb_from_ycc420_step(y + 2 * i, chroma, i, false, true, rgb + 6 * i);
 }
 
 }  // namespace
