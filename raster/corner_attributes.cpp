@@ -180,6 +180,16 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
   }
 }
 
+void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3], float record[9]) {
+  const uint8_t* const colors[3] = {vertices[order[0]]->color, vertices[order[1]]->color, vertices[order[2]]->color};
+  for (int c = 0; c < 3; ++c) {
+    const float a0 = static_cast<float>(colors[0][c]) * surface.mean[c];
+    record[3 * c] = a0;
+    record[3 * c + 1] = static_cast<float>(colors[1][c]) * surface.mean[c] - a0;
+    record[3 * c + 2] = static_cast<float>(colors[2][c]) * surface.mean[c] - a0;
+  }
+}
+
 void write_whole_record(const CornerAttributes& corners, const int order[3], int n_attributes, float* record) {
   const float* const values[3] = {corners.value[order[0]], corners.value[order[1]], corners.value[order[2]]};
   for (int j = 0; j < n_attributes; ++j) {

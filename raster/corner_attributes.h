@@ -38,6 +38,8 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
 
 // The record that the kernels read, for a triangle whose corner i is the mean of the given corners with weights[i]:
 // a0, a1 - a0, a2 - a0 for each attribute. write_whole_record: corner i is the given corner order[i].
+// write_color_record: the same for unlit surfaces without other attributes, from the vertices at once.
+void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3], float record[9]);
 void write_whole_record(const CornerAttributes& corners, const int order[3], int n_attributes, float* record);
 void write_record(const CornerAttributes& corners, const float* const weights[3], int n_attributes, float* record);
 

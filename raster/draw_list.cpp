@@ -1,6 +1,7 @@
 #include "raster/draw_list.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "raster/corner_attributes.h"
 
@@ -74,11 +75,17 @@ void attach_attributes(const FrameInput& input, const Candidate& candidate, cons
   for (int r = 0; r < 2; ++r) {
     if (candidate.surfaces[r] == nullptr) continue;
     const Surface& surface = *candidate.surfaces[r];
+    triangle.state[r] = surface.batch;
+    if (corners == nullptr && surface.lit == Surface::Lit::no && surface.layout.count == 3) {
+      float* record = arena.allocate(9);
+      write_color_record(surface, candidate.vertices, order, record);
+      triangle.attributes[r] = record;
+      continue;
+    }
     CornerAttributes attributes;
     corner_attributes(surface, input.kernels->tile, candidate.normal, candidate.vertices, candidate.lit[r],
                       *candidate.first, front, attributes);
     triangle.attributes[r] = write(attributes, surface.layout.count);
-    triangle.state[r] = surface.batch;
   }
   if (input.previous_clip == nullptr) return;
   CornerAttributes previous;
@@ -95,13 +102,19 @@ bool is_back(const ScreenVertex& v0, const ScreenVertex& v1, const ScreenVertex&
 
 void DrawList::transform(const FrameInput& input, ThreadPool& pool) {
   const std::vector<Vertex>& source = input.mesh->vertices;
-  if (vertices_.size() < source.size()) vertices_.resize(source.size());
+  if (screen_.size() < source.size()) {
+    screen_.resize(source.size());
+    outcodes_.resize(source.size());
+  }
+  transform_ = screen_transform(input.camera->clip_from_world, input.viewport);
+  rules_ = setup_rules(input.viewport, input.hull);
+  static_assert(sizeof(Vertex) % sizeof(float) == 0 && sizeof(Vertex::position) + sizeof(Vertex::normal) >= 16);
   constexpr size_t kRange = 4096;
   const size_t ranges = (source.size() + kRange - 1) / kRange;
   pool.for_each(static_cast<int64_t>(ranges), [&](int64_t range) {
     const size_t first = static_cast<size_t>(range) * kRange, last = std::min(first + kRange, source.size());
-    for (size_t i = first; i < last; ++i)
-      vertices_[i] = transform_vertex(input.camera->clip_from_world, input.viewport, source[i].position);
+    input.kernels->front.transform_vertices(transform_, source[first].position, sizeof(Vertex) / sizeof(float),
+                                            static_cast<int>(last - first), &screen_[first], &outcodes_[first]);
   });
 }
 
@@ -111,7 +124,7 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
   transform(input, pool);
   for (int r = 0; r < 2; ++r)
     if (input.surfaces[r] != nullptr)
-      lit_[r].prepare(*input.mesh, *input.surfaces[r], input.kernels->tile, vertices_, pool);
+      lit_[r].prepare(*input.mesh, *input.surfaces[r], input.kernels->tile, outcodes_.data(), pool);
 
   // Chunks only divide the work: triangles keep the order of the scene whatever their number.
   const size_t n_faces = input.mesh->faces.size();
@@ -136,13 +149,15 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
 void DrawList::process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk) {
   chunk.triangles.reset();
   chunk.attributes.reset();
-  chunk.list.clear();
   chunk.pairs.clear();
+  chunk.n_pending = 0;
+  chunk.drop_back = 0;
   chunk.normal_of = UINT32_MAX;
   chunk.stats = {};
   chunk.result = {};
   for (size_t i = first_face; i < last_face && chunk.result.ok(); ++i)
     process_face(input, static_cast<uint32_t>(i), chunk);
+  flush(input, chunk);
   fill_bins(chunk);
 }
 
@@ -173,13 +188,13 @@ void DrawList::process_face(const FrameInput& input, uint32_t face_number, Chunk
 bool DrawList::is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const {
   uint32_t any = 0, all = ~0u;
   for (uint32_t k = 0; k < face.count; ++k) {
-    any |= vertices_[indices[k]].outcode;
-    all &= vertices_[indices[k]].outcode;
+    any |= outcodes_[indices[k]];
+    all &= outcodes_[indices[k]];
   }
   if ((any & kNotFinite) != 0) return false;
   if ((all & kOutView) != 0) return true;
   if (face.count != 4 || !drop_back_faces || (any & kOutClip) != 0) return false;
-  const auto corner = [&](int k) -> const ScreenVertex& { return vertices_[indices[k]].screen; };
+  const auto corner = [&](int k) -> const ScreenVertex& { return screen_[indices[k]]; };
   return is_back(corner(0), corner(1), corner(2)) && is_back(corner(0), corner(2), corner(3)) &&
          is_back(corner(0), corner(1), corner(3)) && is_back(corner(1), corner(2), corner(3));
 }
@@ -213,39 +228,71 @@ const FaceNormal& DrawList::unit_normal_of(const Mesh& mesh, uint32_t face_numbe
   return chunk.normal;
 }
 
+// Trivial rejections. What needs no clipping waits until there is a group; groups and clipped triangles keep the order
+// of the scene.
 void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3],
                                 Chunk& chunk) {
   ++chunk.stats.triangles_submitted;
-  const TransformedVertex* corners[3] = {&vertices_[vertices[0]], &vertices_[vertices[1]], &vertices_[vertices[2]]};
-  const uint32_t any = corners[0]->outcode | corners[1]->outcode | corners[2]->outcode;
-  const uint32_t all = corners[0]->outcode & corners[1]->outcode & corners[2]->outcode;
+  const uint32_t codes[3] = {outcodes_[vertices[0]], outcodes_[vertices[1]], outcodes_[vertices[2]]};
+  const uint32_t any = codes[0] | codes[1] | codes[2], all = codes[0] & codes[1] & codes[2];
   if ((any & kNotFinite) != 0) {
     ++chunk.stats.triangles_dropped;
     return;
   }
   if ((all & kOutView) != 0) return;
+  const PendingTriangle triangle{face_number, {vertices[0], vertices[1], vertices[2]}};
+  if ((any & kOutClip) != 0) {
+    flush(input, chunk);
+    process_clipped(input, triangle, any & kOutClip, chunk);
+    return;
+  }
+  const int lane = chunk.n_pending++;
+  chunk.pending[lane] = triangle;
+  for (int i = 0; i < 3; ++i) chunk.corners[lane][i] = &screen_[vertices[i]];
+  const bool drop_back_faces = (*input.surfaces[0])[input.mesh->faces[face_number].material].drop_back_faces;
+  chunk.drop_back |= (drop_back_faces ? 1u : 0u) << lane;
+  if (chunk.n_pending == kSetupLanes) flush(input, chunk);
+}
 
+// Sets up the triangles that wait.
+void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
+  const int n = chunk.n_pending;
+  if (n == 0) return;
+  RasterTriangle* stored = chunk.triangles.allocate(kSetupLanes);
+  const SetupMasks masks = input.kernels->front.setup_triangles(rules_, n, chunk.corners, chunk.drop_back, stored);
+  const auto n_drawn = static_cast<size_t>(std::popcount(masks.drawn));
+  chunk.triangles.release(kSetupLanes - n_drawn);
+  chunk.stats.triangles_dropped += static_cast<uint64_t>(std::popcount(masks.degenerate));
+  chunk.n_pending = 0;
+  chunk.drop_back = 0;
+  Candidate candidate;
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left);
+    const PendingTriangle& triangle = chunk.pending[lane];
+    fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
+    store(input, candidate, nullptr, (masks.front >> lane & 1) != 0, chunk, *stored++);
+  }
+}
+
+void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes,
+                               Chunk& chunk) {
   const Mesh& mesh = *input.mesh;
-  const Face& face = mesh.faces[face_number];
-  const bool whole = (any & kOutClip) == 0;
-  const bool drop_back_faces = (*input.surfaces[0])[face.material].drop_back_faces;
-  if (whole && drop_back_faces && is_back(corners[0]->screen, corners[1]->screen, corners[2]->screen)) return;
-
+  TransformedVertex vertices[3];
+  const TransformedVertex* corners[3];
+  for (int i = 0; i < 3; ++i) {
+    vertices[i] = transform_vertex(transform_, mesh.vertices[triangle.vertices[i]].position);
+    corners[i] = &vertices[i];
+  }
   ClipVertex polygon[kMaxClipVertices];
   ScreenVertex screen[kMaxClipVertices];
-  int n = 3;
-  if (whole) {
-    for (int i = 0; i < 3; ++i) screen[i] = corners[i]->screen;
-  } else {
-    n = clip_triangle(corners, any & kOutClip, input.viewport, polygon);
-    for (int i = 0; i < n; ++i) {
-      if (project_vertex(polygon[i], input.viewport, screen[i])) continue;
-      ++chunk.stats.triangles_dropped;
-      return;
-    }
+  const int n = clip_triangle(corners, planes, input.viewport, polygon);
+  for (int i = 0; i < n; ++i) {
+    if (project_vertex(polygon[i], transform_, screen[i])) continue;
+    ++chunk.stats.triangles_dropped;
+    return;
   }
+  const bool drop_back_faces = (*input.surfaces[0])[mesh.faces[triangle.face].material].drop_back_faces;
   Candidate candidate;
-  bool has_candidate = false;
   uint64_t drawn = 0, degenerate = 0;
   for (int i = 1; i + 1 < n; ++i) {
     const ScreenVertex triangle_corners[3] = {screen[0], screen[i], screen[i + 1]};
@@ -257,22 +304,24 @@ void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, c
       chunk.triangles.release(1);
       continue;
     }
-    if (!has_candidate) fill_candidate(input, face_number, vertices, chunk, candidate);
-    has_candidate = true;
-    stored->id = candidate.id;
-    stored->attributes[0] = stored->attributes[1] = stored->attributes[2] = nullptr;
-    stored->state[0] = stored->state[1] = 0;
+    if (drawn++ == 0) fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
     const ClipVertex* const clip_corners[3] = {&polygon[0], &polygon[i], &polygon[i + 1]};
-    attach_attributes(input, candidate, whole ? nullptr : clip_corners, front, chunk.attributes, *stored);
-    chunk.list.push_back(stored);
-    ++drawn;
+    store(input, candidate, clip_corners, front, chunk, *stored);
   }
-  chunk.stats.triangles_drawn += drawn;
   if (drawn == 0 && degenerate > 0) ++chunk.stats.triangles_dropped;
-  for (size_t i = chunk.list.size() - drawn; i < chunk.list.size(); ++i)
-    for_each_tile(*chunk.list[i], tiles_x_, input.hull, [&](int tile) {
-      chunk.pairs.push_back({static_cast<uint32_t>(tile), chunk.list[i]});
-    });
+}
+
+// Completes a triangle that is set up and lists it in its tiles. corners: null for a triangle that was not clipped.
+void DrawList::store(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners, bool front,
+                     Chunk& chunk, RasterTriangle& triangle) const {
+  triangle.id = candidate.id;
+  triangle.attributes[0] = triangle.attributes[1] = triangle.attributes[2] = nullptr;
+  triangle.state[0] = triangle.state[1] = 0;
+  attach_attributes(input, candidate, corners, front, chunk.attributes, triangle);
+  for_each_tile(triangle, tiles_x_, input.hull, [&](int tile) {
+    chunk.pairs.push_back({static_cast<uint32_t>(tile), &triangle});
+  });
+  ++chunk.stats.triangles_drawn;
 }
 
 // Counting sort of the (tile, triangle) pairs by tile; stable, so the order of the scene stays.

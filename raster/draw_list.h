@@ -20,10 +20,10 @@ namespace pac::raster {
 template <class T>
 class Arena {
  public:
-  // n <= kBlock elements, contiguous, uninitialized.
+  // n <= kBlock elements, contiguous, uninitialized; kReadable more may be read.
   T* allocate(size_t n) {
     if (used_ + n > kBlock || block_ == 0) {
-      if (block_ == blocks_.size()) blocks_.emplace_back(new T[kBlock]);
+      if (block_ == blocks_.size()) blocks_.emplace_back(new T[kBlock + kReadable]);
       ++block_;
       used_ = 0;
     }
@@ -36,7 +36,7 @@ class Arena {
   void reset() { block_ = used_ = 0; }
 
  private:
-  static constexpr size_t kBlock = 4096;
+  static constexpr size_t kBlock = 4096, kReadable = 1;
   std::vector<std::unique_ptr<T[]>> blocks_;
   size_t block_ = 0, used_ = 0;  // blocks in use; elements in the last of them
 };
@@ -80,11 +80,19 @@ class DrawList {
     uint32_t tile;
     const RasterTriangle* triangle;
   };
+  // A triangle wholly inside the clipping planes that waits for seven others.
+  struct PendingTriangle {
+    uint32_t face;
+    uint32_t vertices[3];
+  };
   // A contiguous part of the faces, worked on by one thread.
   struct Chunk {
     Arena<RasterTriangle> triangles;
     Arena<float> attributes;
-    std::vector<const RasterTriangle*> list;  // all of the chunk, in order
+    PendingTriangle pending[kSetupLanes];
+    const ScreenVertex* corners[kSetupLanes][3];  // of them
+    uint32_t drop_back = 0;                       // bit k: the back of pending[k] is not drawn
+    int n_pending = 0;
     std::vector<TilePair> pairs;              // in order
     std::vector<uint32_t> bin_start;          // per tile, and one past the end: where its part of `bins` starts
     std::vector<const RasterTriangle*> bins;  // by tile, in order
@@ -98,6 +106,10 @@ class DrawList {
   void process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk);
   void process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk);
   void process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk);
+  void process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes, Chunk& chunk);
+  void flush(const FrameInput& input, Chunk& chunk) const;
+  void store(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners, bool front,
+             Chunk& chunk, RasterTriangle& triangle) const;
   bool is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const;
   void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
                       Candidate& out) const;
@@ -105,8 +117,11 @@ class DrawList {
 
   const FaceNormal& unit_normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
 
-  std::vector<TransformedVertex> vertices_;
-  LitVertices lit_[2];  // per rendering
+  ScreenTransform transform_{};
+  SetupRules rules_{};
+  std::vector<ScreenVertex> screen_;  // a vertex
+  std::vector<uint32_t> outcodes_;    // a vertex
+  LitVertices lit_[2];                // per rendering
   std::vector<Chunk> chunks_;
   size_t n_chunks_ = 0;
   int tiles_x_ = 0, tiles_y_ = 0;

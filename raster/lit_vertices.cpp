@@ -36,7 +36,7 @@ void LitVertices::assign_materials(const Mesh& mesh, const std::vector<Surface>&
 }
 
 void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-                              const std::vector<TransformedVertex>& transformed, size_t first, size_t last) {
+                              const uint32_t* outcodes, size_t first, size_t last) {
   Batch batch;
   const auto flush = [&] {
     if (batch.count == 0) return;
@@ -50,7 +50,7 @@ void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surf
     const Vertex& vertex = mesh.vertices[v];
     LitPoint point{{}, &vertex};
     const float* eye = surfaces[material].lighting.eye;
-    const bool usable = (transformed[v].outcode & (kOutView | kNotFinite)) == 0 && own_normal(vertex, point.normal);
+    const bool usable = (outcodes[v] & (kOutView | kNotFinite)) == 0 && own_normal(vertex, point.normal);
     const float towards_eye =
         (point.normal.x * (eye[0] - vertex.position[0]) + point.normal.y * (eye[1] - vertex.position[1])) +
         point.normal.z * (eye[2] - vertex.position[2]);
@@ -67,7 +67,7 @@ void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surf
 }
 
 void LitVertices::prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-                          const std::vector<TransformedVertex>& transformed, ThreadPool& pool) {
+                          const uint32_t* outcodes, ThreadPool& pool) {
   n_materials_ = 0;
   const bool wanted = std::any_of(surfaces.begin(), surfaces.end(),
                                   [](const Surface& surface) { return surface.lit == Surface::Lit::per_corner; });
@@ -78,7 +78,7 @@ void LitVertices::prepare(const Mesh& mesh, const std::vector<Surface>& surfaces
   if (colors_.size() < 6 * n) colors_.resize(6 * n);
   pool.for_each(static_cast<int64_t>((n + kRange - 1) / kRange), [&](int64_t range) {
     const size_t first = static_cast<size_t>(range) * kRange;
-    light_range(mesh, surfaces, kernels, transformed, first, std::min(first + kRange, n));
+    light_range(mesh, surfaces, kernels, outcodes, first, std::min(first + kRange, n));
   });
 }
 

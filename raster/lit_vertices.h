@@ -14,9 +14,9 @@ namespace pac::raster {
 class LitVertices {
  public:
   // Lights the vertices in view whose own normal is on the eye's side, each with the material of the last face that
-  // names it. Does nothing where no material is lit at corners. Faces need not be valid. `transformed`: one a vertex.
+  // names it. Does nothing where no material is lit at corners. Faces need not be valid. `outcodes`: one a vertex.
   void prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-               const std::vector<TransformedVertex>& transformed, ThreadPool& pool);
+               const uint32_t* outcodes, ThreadPool& pool);
 
   // Color and specular color (six floats) of a vertex under a material by its own normal, or null: light it there.
   const float* find(uint32_t vertex, uint32_t material) const {
@@ -26,7 +26,7 @@ class LitVertices {
  private:
   void assign_materials(const Mesh& mesh, const std::vector<Surface>& surfaces);
   void light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-                   const std::vector<TransformedVertex>& transformed, size_t first, size_t last);
+                   const uint32_t* outcodes, size_t first, size_t last);
 
   size_t n_materials_ = 0;           // 0: nothing prepared
   std::vector<uint32_t> materials_;  // a vertex; kNone = not lit

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "base/kernels/tile_kernels.h"
+#include "base/kernels/front_kernels.h"
 #include "raster/clip.h"
 #include "raster/sample_pattern.h"
 
@@ -19,8 +19,10 @@ enum class SetupResult : uint8_t {
   front,       // counter-clockwise on the screen; corners 1 and 2 are exchanged in `out`
   back,        // clockwise on the screen, as `out` wants it
   degenerate,  // zero area after snapping
-  missed,      // between sample positions or outside the image
+  missed,      // between sample positions or outside the image, as FrontKernels::setup_triangles() says
 };
+
+SetupRules setup_rules(const Viewport& viewport, const SampleHull& hull);
 
 // Fills all of `out` but id, state and attributes.
 SetupResult setup_triangle(const ScreenVertex corners[3], const Viewport& viewport, const SampleHull& hull,

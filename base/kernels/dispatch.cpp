@@ -42,6 +42,7 @@ void fill(Kernels& table, Isa isa) {
   fill_reduced_idct_scalar(table.block);
   fill_motion_scalar(table.motion);
   fill_pixel_scalar(table.pixel);
+  fill_front_scalar(table.front);
   fill_tile_scalar(table.tile);
   fill_grid_scalar(table.tile);
   fill_warp_scalar(table.warp);
@@ -51,6 +52,7 @@ void fill(Kernels& table, Isa isa) {
     fill_reduced_idct_sse41(table.block);
     fill_motion_sse41(table.motion);
     fill_pixel_sse41(table.pixel);
+    fill_front_sse41(table.front);
     fill_tile_sse41(table.tile);
     fill_warp_sse41(table.warp);
   }
@@ -61,6 +63,7 @@ void fill(Kernels& table, Isa isa) {
     fill_reduced_idct_avx2(table.block);
     fill_motion_avx2(table.motion);
     fill_pixel_avx2(table.pixel);
+    fill_front_avx2(table.front);
     fill_tile_avx2(table.tile);
   }
 #endif
@@ -70,6 +73,7 @@ void fill(Kernels& table, Isa isa) {
     fill_reduced_idct_neon(table.block);
     fill_motion_neon(table.motion);
     fill_pixel_neon(table.pixel);
+    fill_front_neon(table.front);
     fill_tile_neon(table.tile);
   }
 #endif

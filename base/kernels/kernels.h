@@ -4,6 +4,7 @@
 
 #include "base/isa.h"
 #include "base/kernels/block_kernels.h"
+#include "base/kernels/front_kernels.h"
 #include "base/kernels/motion_kernels.h"
 #include "base/kernels/pixel_kernels.h"
 #include "base/kernels/tile_kernels.h"
@@ -16,6 +17,7 @@ struct Kernels {
   BlockKernels block;    // 8x8 transforms and quantization
   MotionKernels motion;  // block distances, prediction, transforms of prediction errors
   PixelKernels pixel;    // color conversion, chroma resampling, difference and composite
+  FrontKernels front;    // vertices to the screen, triangle setup
   TileKernels tile;      // rasterization inside one tile
   WarpKernels warp;      // reprojection from the frame before
 };

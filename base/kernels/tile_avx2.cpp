@@ -1,6 +1,7 @@
 // Eight lanes in one register.
 #include <immintrin.h>
 
+#include "base/kernels/front_kernels.h"
 #include "base/kernels/tile_kernels.h"
 
 namespace pac {
@@ -146,6 +147,32 @@ inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   const __m128i packed = _mm_packs_epi32(_mm256_castsi256_si128(values.v), _mm256_extracti128_si256(values.v, 1));
   auto* at = reinterpret_cast<__m128i*>(sums);
   _mm_storeu_si128(at, _mm_add_epi16(_mm_loadu_si128(at), _mm_and_si128(packed, mask)));
+}
+
+// Two 4x4 transpositions, of the registers' low halves and of their high halves.
+inline void transpose_halves(const __m256 in[4], __m256 out[4]) {
+  const __m256 t0 = _mm256_unpacklo_ps(in[0], in[1]), t1 = _mm256_unpackhi_ps(in[0], in[1]);
+  const __m256 t2 = _mm256_unpacklo_ps(in[2], in[3]), t3 = _mm256_unpackhi_ps(in[2], in[3]);
+  out[0] = _mm256_shuffle_ps(t0, t2, 0x44);
+  out[1] = _mm256_shuffle_ps(t0, t2, 0xEE);
+  out[2] = _mm256_shuffle_ps(t1, t3, 0x44);
+  out[3] = _mm256_shuffle_ps(t1, t3, 0xEE);
+}
+inline void load_columns(const float* const at[8], F8 rows[4]) {
+  __m256 in[4], out[4];
+  for (int k = 0; k < 4; ++k)
+    in[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[k])), _mm_loadu_ps(at[k + 4]), 1);
+  transpose_halves(in, out);
+  for (int k = 0; k < 4; ++k) rows[k].v = out[k];
+}
+inline void store_columns(float* p, const F8 rows[4]) {
+  const __m256 in[4] = {rows[0].v, rows[1].v, rows[2].v, rows[3].v};
+  __m256 out[4];
+  transpose_halves(in, out);
+  for (int k = 0; k < 4; ++k) {
+    _mm_storeu_ps(p + 4 * k, _mm256_castps256_ps128(out[k]));
+    _mm_storeu_ps(p + 4 * k + 16, _mm256_extractf128_ps(out[k], 1));
+  }
 }
 
 struct LevelTaps;
@@ -296,6 +323,10 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
 
 void fill_tile_avx2(TileKernels& table) {
   fill_table(table);
+}
+
+void fill_front_avx2(FrontKernels& table) {
+  fill_front(table);
 }
 
 }  // namespace pac

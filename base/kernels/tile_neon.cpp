@@ -1,6 +1,7 @@
 // Eight lanes in two registers.
 #include <arm_neon.h>
 
+#include "base/kernels/front_kernels.h"
 #include "base/kernels/tile_kernels.h"
 
 namespace pac {
@@ -155,6 +156,37 @@ inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   vst1q_u16(sums, vaddq_u16(vld1q_u16(sums), vandq_u16(vreinterpretq_u16_s16(packed), mask)));
 }
 
+inline void transpose(float32x4_t v[4]) {
+  const float32x4x2_t t01 = vtrnq_f32(v[0], v[1]), t23 = vtrnq_f32(v[2], v[3]);
+  v[0] = vcombine_f32(vget_low_f32(t01.val[0]), vget_low_f32(t23.val[0]));
+  v[1] = vcombine_f32(vget_low_f32(t01.val[1]), vget_low_f32(t23.val[1]));
+  v[2] = vcombine_f32(vget_high_f32(t01.val[0]), vget_high_f32(t23.val[0]));
+  v[3] = vcombine_f32(vget_high_f32(t01.val[1]), vget_high_f32(t23.val[1]));
+}
+inline void load_columns(const float* const at[8], F8 rows[4]) {
+  float32x4_t low[4], high[4];
+  for (int k = 0; k < 4; ++k) {
+    low[k] = vld1q_f32(at[k]);
+    high[k] = vld1q_f32(at[k + 4]);
+  }
+  transpose(low);
+  transpose(high);
+  for (int k = 0; k < 4; ++k) rows[k] = {low[k], high[k]};
+}
+inline void store_columns(float* p, const F8 rows[4]) {
+  float32x4_t low[4], high[4];
+  for (int k = 0; k < 4; ++k) {
+    low[k] = rows[k].lo;
+    high[k] = rows[k].hi;
+  }
+  transpose(low);
+  transpose(high);
+  for (int k = 0; k < 4; ++k) {
+    vst1q_f32(p + 4 * k, low[k]);
+    vst1q_f32(p + 4 * k + 16, high[k]);
+  }
+}
+
 struct LevelTaps;
 void filter_bilinear(const uint8_t* texels, const LevelTaps& taps, float* out);
 void filter_trilinear(const uint8_t* texels, const LevelTaps& fine, const LevelTaps& coarse, I8 fraction, float* out);
@@ -247,6 +279,10 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
 
 void fill_tile_neon(TileKernels& table) {
   fill_table(table);
+}
+
+void fill_front_neon(FrontKernels& table) {
+  fill_front(table);
 }
 
 }  // namespace pac

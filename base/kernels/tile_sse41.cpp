@@ -1,6 +1,7 @@
 // Eight lanes in two registers.
 #include <smmintrin.h>
 
+#include "base/kernels/front_kernels.h"
 #include "base/kernels/tile_kernels.h"
 
 namespace pac {
@@ -154,6 +155,30 @@ inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   _mm_storeu_si128(at, _mm_add_epi16(_mm_loadu_si128(at), _mm_and_si128(packed, mask)));
 }
 
+inline void load_columns(const float* const at[8], F8 rows[4]) {
+  __m128 low[4], high[4];
+  for (int k = 0; k < 4; ++k) {
+    low[k] = _mm_loadu_ps(at[k]);
+    high[k] = _mm_loadu_ps(at[k + 4]);
+  }
+  _MM_TRANSPOSE4_PS(low[0], low[1], low[2], low[3]);
+  _MM_TRANSPOSE4_PS(high[0], high[1], high[2], high[3]);
+  for (int k = 0; k < 4; ++k) rows[k] = {low[k], high[k]};
+}
+inline void store_columns(float* p, const F8 rows[4]) {
+  __m128 low[4], high[4];
+  for (int k = 0; k < 4; ++k) {
+    low[k] = rows[k].lo;
+    high[k] = rows[k].hi;
+  }
+  _MM_TRANSPOSE4_PS(low[0], low[1], low[2], low[3]);
+  _MM_TRANSPOSE4_PS(high[0], high[1], high[2], high[3]);
+  for (int k = 0; k < 4; ++k) {
+    _mm_storeu_ps(p + 4 * k, low[k]);
+    _mm_storeu_ps(p + 4 * k + 16, high[k]);
+  }
+}
+
 struct LevelTaps;
 void filter_bilinear(const uint8_t* texels, const LevelTaps& taps, float* out);
 void filter_trilinear(const uint8_t* texels, const LevelTaps& fine, const LevelTaps& coarse, I8 fraction, float* out);
@@ -291,6 +316,10 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
 
 void fill_tile_sse41(TileKernels& table) {
   fill_table(table);
+}
+
+void fill_front_sse41(FrontKernels& table) {
+  fill_front(table);
 }
 
 }  // namespace pac

@@ -68,6 +68,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(pixel, upsample_h2v2_row),
     PAC_KERNEL(pixel, upsample_h1v2_row),
     PAC_KERNEL(pixel, rgb_from_ycc420_row),
+    PAC_KERNEL(front, transform_vertices),
+    PAC_KERNEL(front, setup_triangles),
     PAC_KERNEL(tile, rasterize),
     PAC_KERNEL(tile, rasterize_grid),
     PAC_KERNEL(tile, collect_grid),

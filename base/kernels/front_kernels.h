@@ -1,0 +1,81 @@
+// The front end of the rasterizer: vertices to the screen, triangles to what the tile kernels read.
+//
+// Like those, every float result is a fixed sequence of IEEE single-precision operations in each lane; whatever is
+// decided about coverage is decided by integers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/kernels/tile_kernels.h"
+
+namespace pac {
+
+// A corner on the screen.
+struct ScreenVertex {
+  int32_t x, y;     // 24.8 pixels
+  float z;          // window depth, >= 0; up to 8.5 beyond the far plane
+  float inverse_w;  // > 0
+};
+
+// Sides of the clipping planes and of the view volume on which a vertex lies.
+enum Outcode : uint32_t {
+  kOutNear = 1,      // z < -w
+  kOutFarGuard = 2,  // z > 16 w: beyond the far plane the depth test rejects; this keeps depth bounded
+  kOutGuardRight = 4,
+  kOutGuardLeft = 8,
+  kOutGuardTop = 16,
+  kOutGuardBottom = 32,
+  kOutClip = 63,  // crossing any of these needs clipping
+  kOutRight = 64,
+  kOutLeft = 128,
+  kOutTop = 256,
+  kOutBottom = 512,
+  kOutFar = 1024,
+  kOutView = kOutNear | 1984,  // all three corners beyond one of these: nothing to see
+  kNotFinite = 2048,           // not a number, infinite or beyond 2^100: the triangle is dropped
+};
+
+// From world space to the screen. Clip coordinate i of (x, y, z) is ((m[i][0] x + m[i][1] y) + m[i][2] z) + m[i][3].
+struct ScreenTransform {
+  float m[4][4];
+  float guard_x, guard_y;    // the guard band: |x| <= guard_x w, |y| <= guard_y w
+  float center_x, center_y;  // of the image, in 1/256 pixel; whole numbers
+};
+
+// Where samples are, and what is not wanted.
+struct SetupRules {
+  int32_t width, height;               // of the image
+  int32_t min_x, min_y, max_x, max_y;  // the hull of the sample offsets of a pixel
+};
+
+constexpr int kSetupLanes = 8;
+
+// Bit k: triangle k of the group.
+struct SetupMasks {
+  uint32_t drawn;       // set up
+  uint32_t front;       // counter-clockwise on the screen: corners 1 and 2 are exchanged
+  uint32_t degenerate;  // zero area after snapping
+};
+
+struct FrontKernels {
+  // Vertex i's position is positions[i * stride], ..., of which four floats are readable. screen[i] is {0, 0, 0, 1}
+  // where the outcode has a bit of kOutClip or kNotFinite (also: w too small to divide by).
+  void (*transform_vertices)(const ScreenTransform& transform, const float* positions, size_t stride, int n,
+                             ScreenVertex* screen, uint32_t* outcodes);
+
+  // Sets up n <= kSetupLanes triangles: all fields of RasterTriangle but id, state and attributes. Not drawn are those
+  // without area, those in `drop_back` (bits) that are clockwise on the screen, and those that no sample can see: whose
+  // bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels none of whose samples is inside.
+  // `out`: room for n; the drawn ones, in order.
+  SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const ScreenVertex* const (*corners)[3],
+                                uint32_t drop_back, RasterTriangle* out);
+};
+
+// front_scalar.cpp; the others stand beside the tile kernels, whose operations they use.
+void fill_front_scalar(FrontKernels& table);
+void fill_front_sse41(FrontKernels& table);
+void fill_front_avx2(FrontKernels& table);
+void fill_front_neon(FrontKernels& table);
+
+}  // namespace pac
