@@ -124,24 +124,40 @@ const float* BatchShader::opacity(const Batch& batch) {
   return alpha_;
 }
 
-ShadedBatch BatchShader::shade(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
-                               const LanePack* packs, int n) {
+InterpolateTarget BatchShader::interpolate_target(const Surface& surface, const ShadePass& pass) {
   const AttributeLayout& layout = surface.layout;
-  const Batch batch{kernels, surface, pass, packs, n};
   InterpolateTarget target{pass.rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
   if (surface.textured || surface.alpha_textured) {
     target.lod = lod_;
     target.width = static_cast<float>(surface.sampler.width[0]);
     target.height = static_cast<float>(surface.sampler.height[0]);
   }
-  kernels.interpolate(packs, n, pass.origin, target);
+  return target;
+}
+
+ShadedBatch BatchShader::shade(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
+                               const LanePack* packs, int n) {
+  kernels.interpolate(packs, n, pass.origin, interpolate_target(surface, pass));
+  return finish({kernels, surface, pass, packs, n});
+}
+
+ShadedBatch BatchShader::shade_lanes(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
+                                     const LaneSample* samples, int n) {
+  kernels.interpolate_lanes(samples, n, pass.origin, interpolate_target(surface, pass));
+  return finish({kernels, surface, pass, nullptr, (n + 7) / 8});
+}
+
+// From interpolated attributes to colors.
+ShadedBatch BatchShader::finish(const Batch& batch) {
+  const Surface& surface = batch.surface;
+  const AttributeLayout& layout = surface.layout;
   const float* added = layout.specular >= 0 ? row(layout.specular) : nullptr;
   if (surface.lit == Surface::Lit::per_sample) added = light(batch);
   if (surface.textured) sample_base(batch);
   if (surface.maps != nullptr) added = add_maps(batch, added);
   ShadedBatch out{rows_, surface.textured ? texels_ : nullptr, added, nullptr};
   if (surface.fogged) {
-    kernels.fog(surface.fog, 8 * n, row(layout.position), out.texels, out.added, rows_);
+    batch.kernels.fog(surface.fog, 8 * batch.n, row(layout.position), out.texels, out.added, rows_);
     out.texels = out.added = nullptr;
   }
   if (surface.alpha == AlphaMode::blend) out.alpha = opacity(batch);

@@ -28,6 +28,13 @@ class BatchShader {
   // Shades n <= kBatchPacks packs whose triangles all have `surface`.
   ShadedBatch shade(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, const LanePack* packs,
                     int n);
+  // The same for n <= kBatchLanes samples of any triangles with `surface`, where shades_lanes(surface).
+  ShadedBatch shade_lanes(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
+                          const LaneSample* samples, int n);
+  // Nothing that the surface asks for needs to know how samples are packed.
+  static bool shades_lanes(const Surface& surface) {
+    return surface.maps == nullptr && surface.max_probes == 1 && surface.shadows == nullptr;
+  }
   // Takes the samples whose opacity is below the cutoff off the packs' masks. The surface's alpha is AlphaMode::mask.
   void cut_out(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, LanePack* packs, int n);
 
@@ -37,9 +44,11 @@ class BatchShader {
     const TileKernels& kernels;
     const Surface& surface;
     const ShadePass& pass;
-    const LanePack* packs;
-    int n;
+    const LanePack* packs;  // null: lanes of any triangles
+    int n;                  // groups of eight lanes
   };
+  InterpolateTarget interpolate_target(const Surface& surface, const ShadePass& pass);
+  ShadedBatch finish(const Batch& batch);
   float* row(int attribute) { return rows_ + attribute * kBatchLanes; }
   void sample_base(const Batch& batch);
   void sample_map(const Batch& batch, const TextureSampler& sampler);

@@ -61,6 +61,8 @@ class TilePainter {
   void rasterize_mask(const PaintInput& input, uint32_t number, const Surface& surface, const ShadePass& pass);
   int visible_packs(const PaintInput& input, const RasterTriangle& triangle, SamplePosition origin);
   void shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
+  void shade_lanes(const PaintInput& input, const Surface& surface, const ShadePass& pass, uint16_t* sums);
+  static int few_lanes(const Surface& surface);
   void blend(const PaintInput& input, const ShadePass& pass);
   void add_sample(const PaintInput& input, int rendering);
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
@@ -87,6 +89,8 @@ class TilePainter {
   static constexpr int kGridRows = 8, kMostPacks = kGridRows * kTileSize * kGridSamples;
   LanePack packs_[kMostPacks], batch_[kMostPacks], shared_packs_[kTilePixels];
   int n_packs_ = 0;
+  LaneSample lanes_[kBatchLanes];  // of packs with few, before they are shaded
+  int n_lanes_ = 0;
 };
 
 }  // namespace pac::raster

@@ -10,6 +10,18 @@ const float* position(const Mesh& mesh, const Face& face, uint32_t corner) {
   return mesh.vertices[mesh.indices[face.first + corner]].position;
 }
 
+// Drops the axis along which the normal is longest, keeping the polygon counter-clockwise.
+struct Axes {
+  int u, v;
+};
+Axes projection_axes(const FaceNormal& n) {
+  const float ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
+  const int axis = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
+  const float along = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  return along < 0 ? Axes{v, u} : Axes{u, v};
+}
+
 }  // namespace
 
 FaceNormal face_normal(const Mesh& mesh, const Face& face) {
@@ -27,19 +39,28 @@ FaceNormal face_normal(const Mesh& mesh, const Face& face) {
   return {static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2])};
 }
 
-// Drops the axis along which the normal is longest, keeping the polygon counter-clockwise.
 void PolygonCutter::project(const Mesh& mesh, const Face& face) {
-  const FaceNormal n = face_normal(mesh, face);
-  const float ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
-  const int axis = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
-  const float along = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
-  int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  if (along < 0) std::swap(u, v);
+  const Axes axes = projection_axes(face_normal(mesh, face));
   points_.resize(face.count);
   for (uint32_t i = 0; i < face.count; ++i) {
     const float* p = position(mesh, face, i);
-    points_[i] = {p[u], p[v]};
+    points_[i] = {p[axes.u], p[axes.v]};
   }
+}
+
+// is_convex() of project(), without the buffers: most polygons are quadrilaterals.
+bool PolygonCutter::is_convex_quadrilateral(const Mesh& mesh, const Face& face) {
+  const Axes axes = projection_axes(face_normal(mesh, face));
+  Point p[4];
+  for (uint32_t i = 0; i < 4; ++i) {
+    const float* at = position(mesh, face, i);
+    p[i] = {at[axes.u], at[axes.v]};
+  }
+  // A product that is not a number fails its comparison.
+  const auto left = [&](int a, int b, int c) {
+    return (p[b].x - p[a].x) * (p[c].y - p[a].y) - (p[b].y - p[a].y) * (p[c].x - p[a].x) >= 0;
+  };
+  return left(0, 1, 2) && left(1, 2, 3) && left(2, 3, 0) && left(3, 0, 1) && left(0, 2, 3);
 }
 
 // > 0: a -> b -> c turns left.
@@ -114,8 +135,13 @@ std::span<const CornerTriple> PolygonCutter::cut(const Mesh& mesh, const Face& f
     triangles_.push_back({{0, 1, 2}});
     return triangles_;
   }
+  if (face.count == 4 && is_convex_quadrilateral(mesh, face)) {
+    triangles_.push_back({{0, 1, 2}});
+    triangles_.push_back({{0, 2, 3}});
+    return triangles_;
+  }
   project(mesh, face);
-  if (is_convex()) {
+  if (face.count != 4 && is_convex()) {
     for (uint32_t i = 1; i + 1 < face.count; ++i) triangles_.push_back({{0, i, i + 1}});
   } else {
     clip_ears();

@@ -34,6 +34,7 @@ class PolygonCutter {
   };
   void project(const Mesh& mesh, const Face& face);
   bool is_convex() const;
+  static bool is_convex_quadrilateral(const Mesh& mesh, const Face& face);
   double turn(uint32_t a, uint32_t b, uint32_t c) const;
   bool is_ear(uint32_t corner, int64_t& budget) const;
   void clip_ears();

@@ -51,6 +51,13 @@ struct LanePack {
   uint8_t weight[8];  // how many samples of its pixel a lane of the mask stands for: collect_grid() alone sets it
 };
 
+// One sample by itself, for lanes of different triangles: lane x % 8 of the pack at x - x % 8.
+struct LaneSample {
+  const RasterTriangle* triangle;
+  uint8_t x, y;    // in the tile
+  uint8_t weight;  // as LanePack's
+};
+
 // What several samples of each pixel of a tile see. Pixels that show one triangle at all samples hold its id alone; the
 // others hold id and depth of every sample. Which form a pixel has may differ between instruction sets, what its
 // samples see may not. All arrays are the caller's, 32-byte aligned.
@@ -171,7 +178,11 @@ struct TileKernels {
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
 
-  // The same for all samples of the grid at once; origin: 256 * tile origin. `triangles`: those of the ids so far.
+  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1.
+  void (*rasterize_all)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
+                        uint32_t* ids);
+
+  // rasterize() for all samples of the grid at once; origin: 256 * tile origin. `triangles`: those of the ids so far.
   void (*rasterize_grid)(const RasterTriangle& triangle, uint32_t id, const RasterTriangle* const* triangles,
                          SamplePosition origin, const SampleGrid& grid);
 
@@ -189,6 +200,10 @@ struct TileKernels {
 
   // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too.
   void (*interpolate)(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target);
+
+  // The same for n lanes of any triangles, rounded up to 8: each gets the bits that its pack would give it. The records
+  // of attributes must be readable for one float beyond their ends.
+  void (*interpolate_lanes)(const LaneSample* samples, int n, SamplePosition origin, const InterpolateTarget& target);
 
   // Blinn-Phong lighting of n lanes (rounded up to 8): color rows[0..2] (255 = full) become
   // emission + color/255 * (ambient + sum diffuse N.L); specular rows get sum specular (N.H)^shininess.
@@ -246,6 +261,10 @@ struct TileKernels {
   // of kTileSize^2; modulo 2^16.
   void (*accumulate)(const LanePack* packs, int n, bool weighted, const float* color, const float* texels,
                      const float* specular, const uint8_t background[3], uint16_t* sums);
+
+  // The same for n lanes of any triangles.
+  void (*accumulate_lanes)(const LaneSample* samples, int n, bool weighted, const float* color, const float* texels,
+                           const float* specular, const uint8_t background[3], uint16_t* sums);
 
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);

@@ -38,6 +38,11 @@ void rasterize(const RasterTriangle& t, uint32_t id, SamplePosition origin, floa
   }
 }
 
+void rasterize_all(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
+                   uint32_t* ids) {
+  for (uint32_t i = 0; i < n; ++i) rasterize(*triangles[i], i + 1, origin, depth, ids);
+}
+
 int collect_packs(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, LanePack* packs) {
   int n = 0;
   for (int y = 0; y < height; ++y)
@@ -163,20 +168,35 @@ void footprint(const LanePack* packs, int n, SamplePosition origin, const Footpr
   }
 }
 
+// The row element `at`: lane k of the group of eight whose lane 0 has E_1 = first1 and E_2 = first2.
+void interpolate_lane(const RasterTriangle& t, int64_t first1, int64_t first2, int k, const InterpolateTarget& target,
+                      int at) {
+  const float* attributes = t.attributes[target.rendering];
+  const LaneWeights lane = lane_weights(t, first1, first2, k);
+  for (int j = 0; j < target.n_attributes; ++j) {
+    const float* a = attributes + 3 * j;
+    target.rows[j * kBatchLanes + at] = (a[0] + lane.l1 * a[1]) + lane.l2 * a[2];
+  }
+  if (target.lod != nullptr) target.lod[at] = lane_lod(t, lane, attributes + 3 * target.uv, target);
+}
+
 void interpolate(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target) {
   for (int p = 0; p < n; ++p) {
     const RasterTriangle& t = *packs[p].triangle;
-    const float* attributes = t.attributes[target.rendering];
     const int32_t x = origin.x + 256 * packs[p].x - t.x0, y = origin.y + 256 * packs[p].y - t.y0;
     const int64_t first1 = edge(t, 1, x, y), first2 = edge(t, 2, x, y);
-    for (int k = 0; k < 8; ++k) {
-      const LaneWeights lane = lane_weights(t, first1, first2, k);
-      for (int j = 0; j < target.n_attributes; ++j) {
-        const float* a = attributes + 3 * j;
-        target.rows[j * kBatchLanes + 8 * p + k] = (a[0] + lane.l1 * a[1]) + lane.l2 * a[2];
-      }
-      if (target.lod != nullptr) target.lod[8 * p + k] = lane_lod(t, lane, attributes + 3 * target.uv, target);
-    }
+    for (int k = 0; k < 8; ++k) interpolate_lane(t, first1, first2, k, target, 8 * p + k);
+  }
+}
+
+// Lanes beyond the last sample repeat it.
+void interpolate_lanes(const LaneSample* samples, int n, SamplePosition origin, const InterpolateTarget& target) {
+  for (int i = 0; i < (n + 7) / 8 * 8; ++i) {
+    const LaneSample& s = samples[std::min(i, n - 1)];
+    const RasterTriangle& t = *s.triangle;
+    const int k = s.x & 7;
+    const int32_t x = origin.x + 256 * (s.x - k) - t.x0, y = origin.y + 256 * s.y - t.y0;
+    interpolate_lane(t, edge(t, 1, x, y), edge(t, 2, x, y), k, target, i);
   }
 }
 
@@ -203,23 +223,30 @@ void blend(const LanePack* packs, int n, const float* color, const float* texels
     }
 }
 
+// Adds a lane's color, `times` over, to the pixel `at`.
+void accumulate_lane(int lane, int at, int times, const float* color, const float* texels, const float* specular,
+                     const uint8_t background[3], uint16_t* sums) {
+  for (int c = 0; c < 3; ++c) {
+    const int byte = static_cast<int>(final_color(color, texels, specular, c * kBatchLanes + lane) + 0.5f);
+    uint16_t& sum = sums[c * kTileSize * kTileSize + at];
+    sum = static_cast<uint16_t>(sum + (byte - background[c]) * times);
+  }
+}
+
 void accumulate(const LanePack* packs, int n, bool weighted, const float* color, const float* texels,
                 const float* specular, const uint8_t background[3], uint16_t* sums) {
-  for (int p = 0; p < n; ++p) {
-    for (int k = 0; k < 8; ++k) {
-      if ((packs[p].mask >> k & 1) == 0) continue;
-      const int at = packs[p].y * kTileSize + packs[p].x + k;
-      for (int c = 0; c < 3; ++c) {
-        const int row = c * kBatchLanes + 8 * p + k;
-        float value = color[row];
-        if (texels != nullptr) value = (value * texels[row]) * (1.0f / 255.0f);
-        if (specular != nullptr) value = value + specular[row];
-        const int byte = static_cast<int>(std::min(std::max(value, 0.0f), 255.0f) + 0.5f);
-        uint16_t& sum = sums[c * kTileSize * kTileSize + at];
-        sum = static_cast<uint16_t>(sum + (byte - background[c]) * (weighted ? packs[p].weight[k] : 1));
-      }
-    }
-  }
+  for (int p = 0; p < n; ++p)
+    for (int k = 0; k < 8; ++k)
+      if ((packs[p].mask >> k & 1) != 0)
+        accumulate_lane(8 * p + k, packs[p].y * kTileSize + packs[p].x + k, weighted ? packs[p].weight[k] : 1, color,
+                        texels, specular, background, sums);
+}
+
+void accumulate_lanes(const LaneSample* samples, int n, bool weighted, const float* color, const float* texels,
+                      const float* specular, const uint8_t background[3], uint16_t* sums) {
+  for (int i = 0; i < n; ++i)
+    accumulate_lane(i, samples[i].y * kTileSize + samples[i].x, weighted ? samples[i].weight : 1, color, texels,
+                    specular, background, sums);
 }
 
 void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
@@ -233,11 +260,14 @@ void fill_tile_scalar(TileKernels& table) {
   fill_shade_scalar(table);
   fill_texture_scalar(table);
   table.rasterize = rasterize;
+  table.rasterize_all = rasterize_all;
   table.collect_packs = collect_packs;
   table.interpolate = interpolate;
+  table.interpolate_lanes = interpolate_lanes;
   table.footprint = footprint;
   table.blend = blend;
   table.accumulate = accumulate;
+  table.accumulate_lanes = accumulate_lanes;
   table.resolve_row = resolve_row;
 }
 
