@@ -9,47 +9,16 @@
 #include "raster/setup.h"
 #include "raster/surface.h"
 #include "tests/support/kernel_check.h"
-#include "tests/support/raster_scenes.h"
+#include "tests/support/raster_triangles.h"
 
 namespace {
 
 using namespace pac;
 using namespace pac::raster;
 using test::for_each_isa;
-using test_scenes::Random;
+using namespace test_scenes;
 
 constexpr int kTilePixels = kTileSize * kTileSize;
-constexpr int kImage = 512;
-
-int32_t random_coordinate(Random& random, int kind) {
-  switch (kind) {
-    case 0:  // in and around one tile
-      return static_cast<int32_t>(random.bits() % (64 * 256)) - 16 * 256;
-    case 1:  // a few pixels
-      return 12 * 256 + static_cast<int32_t>(random.bits() % (6 * 256));
-    case 2:  // over the image
-      return static_cast<int32_t>(random.bits() % (600 * 256)) - 44 * 256;
-    case 3:  // whole pixel centers: samples on edges and corners
-      return static_cast<int32_t>(random.bits() % 48) * 256 - 8 * 256 + 128;
-    default:  // to the ends of the guard band
-      return static_cast<int32_t>(random.bits() % (1u << 23)) - (1 << 22) + kImage * 128;
-  }
-}
-
-// A triangle of one of several kinds; false if it is degenerate or misses the image.
-bool random_triangle(Random& random, std::span<const SampleOffset> pattern, RasterTriangle& out) {
-  const int kind = static_cast<int>(random.bits() % 6);
-  ScreenVertex corners[3];
-  for (ScreenVertex& v : corners) {
-    v.x = random_coordinate(random, kind);
-    v.y = random_coordinate(random, kind);
-    v.z = random.unit() * 1.5f;
-    v.inverse_w = random.unit() * (random.bits() % 4 == 0 ? 1e-6f : 10.0f) + 1e-9f;
-  }
-  if (kind == 5) corners[2] = {corners[1].x + static_cast<int32_t>(random.bits() % 3) - 1, corners[1].y + 1, 0.5f, 1};
-  const SetupResult result = setup_triangle(corners, make_viewport(kImage, kImage), sample_hull(pattern), out);
-  return result == SetupResult::front || result == SetupResult::back;
-}
 
 struct Tile {
   alignas(32) float depth[kTilePixels];
@@ -168,39 +137,6 @@ TEST_CASE("collect_grid: every instruction set gives the scalar packs, whichever
       }
     }
   });
-}
-
-// Triangles with attributes, and packs of them.
-struct PackedTriangles {
-  std::vector<RasterTriangle> triangles;
-  std::vector<std::vector<float>> attributes;
-  std::vector<LanePack> packs;
-};
-
-PackedTriangles random_packs(uint32_t seed, int n) {
-  Random random(seed);
-  PackedTriangles out;
-  const auto pattern = sample_pattern(1);
-  while (out.triangles.size() < 16) {
-    RasterTriangle t{};
-    if (!random_triangle(random, pattern, t)) continue;
-    std::vector<float> record;
-    for (int i = 0; i < 3 * kMaxAttributes; ++i) record.push_back(random.between(-300, 300));
-    out.triangles.push_back(t);
-    out.attributes.push_back(record);
-  }
-  for (size_t i = 0; i < out.triangles.size(); ++i)
-    out.triangles[i].attributes[0] = out.triangles[i].attributes[1] = out.attributes[i].data();
-  for (int i = 0; i < n; ++i) {
-    LanePack pack{&out.triangles[random.bits() % 16],
-                  static_cast<uint8_t>(random.bits() % 4 * 8),
-                  static_cast<uint8_t>(random.bits() % kTileSize),
-                  static_cast<uint8_t>(random.bits()),
-                  {}};
-    for (uint8_t& weight : pack.weight) weight = static_cast<uint8_t>(random.bits() % (kGridSamples + 1));
-    out.packs.push_back(pack);
-  }
-  return out;
 }
 
 TEST_CASE("interpolate: every instruction set gives the scalar bits, inside and outside the triangles") {

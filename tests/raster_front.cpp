@@ -1,0 +1,296 @@
+// The front end's kernels and those for small triangles: every instruction set gives the scalar bits, and shortcuts
+// change nothing that can be seen.
+#include <doctest/doctest.h>
+
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "tests/support/kernel_check.h"
+#include "tests/support/raster_triangles.h"
+
+namespace {
+
+using namespace pac;
+using namespace pac::raster;
+using namespace pac::test_scenes;
+using test::for_each_isa;
+
+constexpr int kTilePixels = kTileSize * kTileSize;
+
+TEST_CASE(
+    "transform_vertices: every instruction set gives the scalar bits, for any number of vertices and any numbers") {
+  const float special[] = {0.0f,
+                           -0.0f,
+                           1e-42f,
+                           1e30f,
+                           -1e38f,
+                           std::numeric_limits<float>::infinity(),
+                           std::numeric_limits<float>::quiet_NaN()};
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(41);
+    uint64_t n_projected = 0, n_other = 0;
+    for (int round = 0; round < 300; ++round) {
+      const auto n = static_cast<size_t>(random.bits() % 40);
+      const size_t stride = 4 + random.bits() % 6;
+      std::vector<float> positions(stride * n + 4);
+      for (float& p : positions) p = random.bits() % 30 == 0 ? special[random.bits() % 7] : random.between(-6, 6);
+      const Camera camera = room_camera(1, random.unit());
+      glm::mat4 matrix = camera.clip_from_world;
+      if (round % 8 == 0) matrix[3][static_cast<int>(random.bits() % 4)] = special[random.bits() % 4];
+      const auto width = 1 + static_cast<int>(random.bits() % 32768),
+                 height = 1 + static_cast<int>(random.bits() % 2000);
+      const ScreenTransform transform = screen_transform(matrix, make_viewport(width, height));
+      std::vector<ScreenVertex> expected(n + 1, {7, 7, 7, 7}), actual = expected;
+      std::vector<uint32_t> expected_codes(n + 1, 77), actual_codes = expected_codes;
+      scalar.front.transform_vertices(transform, positions.data(), stride, static_cast<int>(n), expected.data(),
+                                      expected_codes.data());
+      table.front.transform_vertices(transform, positions.data(), stride, static_cast<int>(n), actual.data(),
+                                     actual_codes.data());
+      REQUIRE(expected_codes == actual_codes);
+      REQUIRE(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(ScreenVertex)) == 0);
+      for (size_t i = 0; i < n; ++i) ++((expected_codes[i] & (kOutClip | kNotFinite)) == 0 ? n_projected : n_other);
+    }
+    CHECK(n_projected > 1000);
+    CHECK(n_other > 1000);
+  });
+}
+
+struct Group {
+  ScreenVertex vertices[kSetupLanes][3];
+  const ScreenVertex* corners[kSetupLanes][3];
+
+  explicit Group(Random& random) {
+    const bool small = random.bits() % 4 != 0;  // one large triangle and the group goes another way
+    for (int k = 0; k < kSetupLanes; ++k)
+      for (int first = 1; first == 1 || (small && is_wide(k)); first = 0) random_corners(random, vertices[k]);
+    if (random.bits() % 3 == 0) vertices[2][1] = vertices[2][random.bits() % 2 == 0 ? 0 : 2];  // no area
+    for (int k = 0; k < kSetupLanes; ++k)
+      for (int i = 0; i < 3; ++i) corners[k][i] = &vertices[k][i];
+  }
+  bool is_wide(int k) const {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < i; ++j)
+        if (std::abs(vertices[k][i].x - vertices[k][j].x) >= 1 << 15 ||
+            std::abs(vertices[k][i].y - vertices[k][j].y) >= 1 << 15)
+          return true;
+    return false;
+  }
+};
+
+void require_equal(const RasterTriangle& a, const RasterTriangle& b) {
+  REQUIRE(a.x0 == b.x0);
+  REQUIRE(a.y0 == b.y0);
+  REQUIRE(std::memcmp(a.a, b.a, sizeof a.a) == 0);
+  REQUIRE(std::memcmp(a.b, b.b, sizeof a.b) == 0);
+  REQUIRE(a.min_x == b.min_x);
+  REQUIRE(a.min_y == b.min_y);
+  REQUIRE(a.max_x == b.max_x);
+  REQUIRE(a.max_y == b.max_y);
+  REQUIRE(a.area2 == b.area2);
+  const float depth_a[] = {a.z0, a.dzdx, a.dzdy, a.z_min, a.z_max},
+              depth_b[] = {b.z0, b.dzdx, b.dzdy, b.z_min, b.z_max};
+  REQUIRE(std::memcmp(depth_a, depth_b, sizeof depth_a) == 0);
+  REQUIRE(std::memcmp(a.w, b.w, sizeof a.w) == 0);
+  REQUIRE(a.shift == b.shift);
+  REQUIRE(std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0);
+}
+
+SetupRules random_rules(Random& random) {
+  const auto side = 1 + static_cast<int32_t>(random.bits() % 512);
+  if (random.bits() % 2 == 0) return {side, 512, 0, 8, 240, 248};
+  const auto x = static_cast<int32_t>(random.bits() % 256), y = static_cast<int32_t>(random.bits() % 256);
+  return {side, 512, x, y, x, y};
+}
+
+TEST_CASE(
+    "setup_triangles: every instruction set gives the scalar bits, groups of any size, from slivers to the guard "
+    "band") {
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(43);
+    uint64_t n_drawn = 0, n_degenerate = 0;
+    for (int round = 0; round < 6000; ++round) {
+      const Group group(random);
+      const SetupRules rules = random_rules(random);
+      const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
+      const uint32_t drop_back = random.bits() & 0xFF & ((1u << n) - 1);
+      RasterTriangle expected[kSetupLanes] = {}, actual[kSetupLanes] = {};
+      const SetupMasks a = scalar.front.setup_triangles(rules, n, group.corners, drop_back, expected);
+      const SetupMasks b = table.front.setup_triangles(rules, n, group.corners, drop_back, actual);
+      REQUIRE(a.drawn == b.drawn);
+      REQUIRE(a.front == b.front);
+      REQUIRE(a.degenerate == b.degenerate);
+      for (int k = 0; k < std::popcount(a.drawn); ++k) require_equal(expected[k], actual[k]);
+      n_drawn += static_cast<uint64_t>(std::popcount(a.drawn));
+      n_degenerate += static_cast<uint64_t>(std::popcount(a.degenerate));
+    }
+    CHECK(n_drawn > 5000);
+    CHECK(n_degenerate > 500);
+  });
+}
+
+// Twice the areas of the triangles between p and the edges all have the sign of the triangle's, none is 0.
+bool is_strictly_inside(const ScreenVertex (&v)[3], int64_t x, int64_t y) {
+  int positive = 0, negative = 0;
+  for (int i = 0; i < 3; ++i) {
+    const ScreenVertex &p = v[i], &q = v[(i + 1) % 3];
+    const int64_t side = (int64_t{q.x} - p.x) * (y - p.y) - (x - p.x) * (int64_t{q.y} - p.y);
+    positive += side > 0 ? 1 : 0;
+    negative += side < 0 ? 1 : 0;
+  }
+  return positive == 3 || negative == 3;
+}
+
+TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that it keeps cover one") {
+  for (const Isa isa : {Isa::scalar, best_isa()}) {
+    Random random(47);
+    uint64_t n_left_out = 0, n_tiny = 0;
+    for (int round = 0; round < 3000; ++round) {
+      Group group(random);
+      for (auto& triangle : group.vertices)  // two pixels or so
+        for (ScreenVertex& v : triangle) {
+          v.x = 30 * 256 + static_cast<int32_t>(random.bits() % 640);
+          v.y = 30 * 256 + static_cast<int32_t>(random.bits() % 640);
+        }
+      const SetupRules rules{64, 64, 128, 128, 128, 128};
+      RasterTriangle out[kSetupLanes] = {};
+      const SetupMasks masks = kernels_for(isa)->front.setup_triangles(rules, kSetupLanes, group.corners, 0, out);
+      const RasterTriangle* drawn = out;
+      for (int k = 0; k < kSetupLanes; ++k) {
+        const bool is_drawn = (masks.drawn >> k & 1) != 0;
+        bool inside = false;
+        for (int64_t y = 28; y < 36; ++y)
+          for (int64_t x = 28; x < 36; ++x)
+            inside = inside || is_strictly_inside(group.vertices[k], 256 * x + 128, 256 * y + 128);
+        if (inside) REQUIRE(is_drawn);
+        n_left_out += is_drawn ? 0 : 1;
+        if (!is_drawn) continue;
+        const RasterTriangle& t = *drawn++;
+        if (t.max_x - t.min_x > 1 || t.max_y - t.min_y > 1) continue;
+        std::vector<float> depth(kTilePixels, 9.0f);
+        std::vector<uint32_t> ids(kTilePixels, 0u);
+        for (int tile = 0; tile < 4; ++tile)
+          kernels_for(Isa::scalar)
+              ->tile.rasterize(t, 1, {256 * kTileSize * (tile % 2) + 128, 256 * kTileSize * (tile / 2) + 128},
+                               depth.data(), ids.data());
+        uint32_t covered = 0;
+        for (const uint32_t id : ids) covered += id;
+        REQUIRE(covered > 0);
+        ++n_tiny;
+      }
+    }
+    CHECK(n_left_out > 1000);
+    CHECK(n_tiny > 1000);
+  }
+}
+
+TEST_CASE("rasterize_all: a tile's triangles together, many behind others, give what one after another gives") {
+  for (int i = 0; i < kIsaCount; ++i) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(i));
+    if (table == nullptr) continue;
+    Random random(53);
+    const auto pattern = sample_pattern(16);
+    for (int round = 0; round < 200; ++round) {
+      std::vector<RasterTriangle> triangles;
+      while (triangles.size() < 60) {
+        RasterTriangle t{};
+        if (!random_triangle(random, pattern, t)) continue;
+        if (round % 2 == 0) {  // parallel to the screen, mostly in front of what follows
+          t.z0 = t.z_min = t.z_max = static_cast<float>(triangles.size() + random.bits() % 8) / 70.0f;
+          t.dzdx = t.dzdy = 0;
+        }
+        triangles.push_back(t);
+      }
+      std::vector<const RasterTriangle*> list;
+      for (const RasterTriangle& t : triangles) list.push_back(&t);
+      const auto tile = static_cast<int32_t>(random.bits() % 4) * kTileSize * 256;
+      const SamplePosition origin{tile + pattern[random.bits() % 16].x, pattern[random.bits() % 16].y};
+      alignas(32) float expected_depth[kTilePixels], depth[kTilePixels];
+      alignas(32) uint32_t expected_ids[kTilePixels], ids[kTilePixels];
+      std::fill_n(expected_depth, kTilePixels, 1.0f);
+      std::fill_n(depth, kTilePixels, 1.0f);
+      std::fill_n(expected_ids, kTilePixels, 0u);
+      std::fill_n(ids, kTilePixels, 0u);
+      for (uint32_t k = 0; k < list.size(); ++k)
+        kernels_for(Isa::scalar)->tile.rasterize(*list[k], k + 1, origin, expected_depth, expected_ids);
+      table->tile.rasterize_all(list.data(), static_cast<uint32_t>(list.size()), origin, depth, ids);
+      REQUIRE(std::memcmp(expected_ids, ids, sizeof ids) == 0);
+      REQUIRE(std::memcmp(expected_depth, depth, sizeof depth) == 0);
+    }
+  }
+}
+
+// The lanes in the masks of packs, and where each is in the packs' rows.
+struct Lanes {
+  std::vector<LaneSample> samples;
+  std::vector<size_t> rows;
+
+  explicit Lanes(const std::vector<LanePack>& packs) {
+    for (size_t p = 0; p < packs.size(); ++p)
+      for (unsigned k = 0; k < 8; ++k) {
+        if ((packs[p].mask >> k & 1) == 0) continue;
+        samples.push_back({packs[p].triangle, static_cast<uint8_t>(packs[p].x + k), packs[p].y, packs[p].weight[k]});
+        rows.push_back(8 * p + k);
+      }
+  }
+};
+
+TEST_CASE("interpolate_lanes: a sample among those of other triangles gets the bits that its pack gives it") {
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    for (uint32_t seed = 1; seed <= 60; ++seed) {
+      const int n = 1 + static_cast<int>(seed * 7 % kBatchPacks);
+      const PackedTriangles input = random_packs(seed, n);
+      const Lanes lanes(input.packs);
+      if (lanes.samples.empty()) continue;
+      std::vector<float> expected(kBatchLanes * (kMaxAttributes + 1), -1.0f), actual = expected;
+      InterpolateTarget target{
+          static_cast<int>(seed % 2), static_cast<int>(5 + seed % 9), expected.data(), nullptr, 3, 256, 64, -1};
+      target.lod = seed % 3 == 0 ? nullptr : expected.data() + kBatchLanes * kMaxAttributes;
+      kernels_for(Isa::scalar)->tile.interpolate(input.packs.data(), n, {128, 128}, target);
+      target.rows = actual.data();
+      target.lod = seed % 3 == 0 ? nullptr : actual.data() + kBatchLanes * kMaxAttributes;
+      table->tile.interpolate_lanes(lanes.samples.data(), static_cast<int>(lanes.samples.size()), {128, 128}, target);
+      for (size_t row = 0; row <= kMaxAttributes; ++row)
+        for (size_t i = 0; i < lanes.rows.size(); ++i)
+          REQUIRE(std::bit_cast<uint32_t>(expected[row * kBatchLanes + lanes.rows[i]]) ==
+                  std::bit_cast<uint32_t>(actual[row * kBatchLanes + i]));
+    }
+  }
+}
+
+TEST_CASE("accumulate_lanes: samples by themselves add what their packs add") {
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    Random random(59);
+    const uint8_t background[3] = {10, 200, 255};
+    for (uint32_t round = 0; round < 40; ++round) {
+      const int n = 1 + static_cast<int>(random.bits() % kBatchPacks);
+      const PackedTriangles input = random_packs(round, n);
+      const Lanes lanes(input.packs);
+      if (lanes.samples.empty()) continue;
+      std::vector<float> packed(9 * kBatchLanes), single(9 * kBatchLanes);  // color, texels, specular
+      for (float& f : packed) f = random.between(-20, 300);
+      for (size_t row = 0; row < 9; ++row)
+        for (size_t i = 0; i < lanes.rows.size(); ++i)
+          single[row * kBatchLanes + i] = packed[row * kBatchLanes + lanes.rows[i]];
+      const bool textured = round % 2 != 0, specular = round % 4 >= 2, weighted = round % 8 >= 4;
+      std::vector<uint16_t> expected(3 * kTilePixels, 1000), actual = expected;
+      const auto part = [&](std::vector<float>& rows, bool wanted, size_t row) {
+        return wanted ? rows.data() + row * kBatchLanes : nullptr;
+      };
+      kernels_for(Isa::scalar)
+          ->tile.accumulate(input.packs.data(), n, weighted, packed.data(), part(packed, textured, 3),
+                            part(packed, specular, 6), background, expected.data());
+      table->tile.accumulate_lanes(lanes.samples.data(), static_cast<int>(lanes.samples.size()), weighted,
+                                   single.data(), part(single, textured, 3), part(single, specular, 6), background,
+                                   actual.data());
+      REQUIRE(expected == actual);
+    }
+  }
+}
+
+}  // namespace
