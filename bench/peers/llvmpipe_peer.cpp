@@ -4,6 +4,10 @@
 //
 //   build/release/bench/peers/llvmpipe_peer [threads [part of a row's name]]        (Debian: libosmesa6-dev)
 //
+// More than one thread: wall times of both, and ours with one thread in the same run. Phong rows: the peer runs a
+// shader of the same lighting formula in each pixel. Sweep rows: a sheet of right triangles with legs of so many pixels
+// that covers the image.
+//
 // Supersampling in GL is a rendering at 4 times the width and height without the box filter, which favors the peer.
 // MSAA is its 4 samples a pixel, the most it has, with the resolve.
 #define GL_GLEXT_PROTOTYPES
@@ -19,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/peers/llvmpipe_phong.h"
 #include "raster/renderer.h"
 #include "raster/triangulate.h"
 #include "tests/support/raster_scenes.h"
@@ -45,7 +50,8 @@ void time_frame(Timing& best, Frame&& frame) {
 // A scene in GL buffers: one index range a material.
 class GlScene {
  public:
-  GlScene(const Scene& scene, const Camera& camera, bool textured, bool lit) : textured_(textured), lit_(lit) {
+  GlScene(const Scene& scene, const Camera& camera, bool textured, bool lit, bool phong)
+      : textured_(textured), lit_(lit), program_(phong ? llvmpipe::make_phong_program(scene, camera) : 0) {
     std::copy_n(&camera.clip_from_world[0][0], 16, matrix_);
     std::copy_n(&camera.eye[0], 3, eye_);
     std::vector<std::vector<uint32_t>> by_material(scene.materials.size());
@@ -69,11 +75,12 @@ class GlScene {
     vertices_ = buffers[0];
     indices_ = buffers[1];
     for (const Material& m : scene.materials) textures_.push_back(m.texture >= 0 ? upload(scene, m) : 0);
-    if (lit) set_lights(scene);
+    if (lit && !phong) set_lights(scene);
   }
 
   void draw() const {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glUseProgram(program_);
     glMatrixMode(GL_PROJECTION);
     glLoadMatrixf(matrix_);
     glMatrixMode(GL_MODELVIEW);
@@ -152,6 +159,7 @@ class GlScene {
   }
 
   bool textured_, lit_;
+  GLuint program_;  // 0: fixed function
   GLfloat matrix_[16], eye_[3];
   GLuint vertices_ = 0, indices_ = 0;
   std::vector<std::pair<size_t, size_t>> ranges_;
@@ -191,7 +199,61 @@ struct Row {
   bool texture;
   Kind kind;
   int width, height;
+  bool phong = false;
+  int leg = 0;  // of the scene "sheet", pixels
 };
+
+// Right triangles with legs of `leg` pixels all over the image, in clip space; smooth colors that are final.
+Scene sheet(int width, int height, int leg) {
+  Scene scene;
+  scene.materials.emplace_back();
+  scene.materials[0].lit = false;
+  Mesh& mesh = scene.mesh;
+  const int columns = (width + leg - 1) / leg, rows = (height + leg - 1) / leg;
+  for (int y = 0; y <= rows; ++y)
+    for (int x = 0; x <= columns; ++x) {
+      Vertex v;
+      v.position[0] = 2.0f * static_cast<float>(x * leg) / static_cast<float>(width) - 1.0f;
+      v.position[1] = 1.0f - 2.0f * static_cast<float>(y * leg) / static_cast<float>(height);
+      for (int c = 0; c < 3; ++c) v.color[c] = static_cast<uint8_t>((x * (17 + c) + y * (29 - c)) % 256);
+      mesh.vertices.push_back(v);
+    }
+  const auto add = [&](int a, int b, int c) {
+    mesh.faces.push_back({static_cast<uint32_t>(mesh.indices.size()), 3, 0});
+    for (const int corner : {a, b, c}) mesh.indices.push_back(static_cast<uint32_t>(corner));
+  };
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const int top = y * (columns + 1) + x, below = top + columns + 1;
+      add(top, below, top + 1);
+      add(top + 1, below, below + 1);
+    }
+  return scene;
+}
+
+struct View {
+  Scene scene;
+  Camera camera;
+};
+View make_view(const Row& row) {
+  const std::string name = row.scene;
+  const float aspect = static_cast<float>(row.width) / static_cast<float>(row.height);
+  if (name == "room") return {test_scenes::room(), test_scenes::room_camera(aspect)};
+  if (name == "sheet") return {sheet(row.width, row.height, row.leg), Camera{}};
+  return {name == "pin" ? test_scenes::bumpy_pin(194, 194) : test_scenes::bumpy_pin(39, 39),
+          test_scenes::pin_camera(aspect)};
+}
+
+RenderQuality quality_of(const Row& row) {
+  RenderQuality quality;
+  quality.texture = row.texture;
+  if (row.phong) quality.shading = Shading::phong;
+  if (row.kind == Kind::supersampled || row.kind == Kind::shaded_once || row.kind == Kind::multisampled)
+    quality.samples = 16;
+  if (row.kind == Kind::shaded_once || row.kind == Kind::multisampled) quality.shading_samples = 1;
+  quality.cull_back_faces = true;
+  return quality;
+}
 
 // Draws and finishes; MSAA is resolved.
 class GlFrame {
@@ -218,22 +280,14 @@ class GlFrame {
 };
 
 void compare(const Row& row, int threads) {
-  const bool room = std::string(row.scene) == "room";
-  Scene scene = room                              ? test_scenes::room()
-                : std::string(row.scene) == "pin" ? test_scenes::bumpy_pin(194, 194)
-                                                  : test_scenes::bumpy_pin(39, 39);
-  const float aspect = static_cast<float>(row.width) / static_cast<float>(row.height);
-  const Camera camera = room ? test_scenes::room_camera(aspect) : test_scenes::pin_camera(aspect);
+  const View view = make_view(row);
   RendererOptions options;
   options.threads = threads;
   auto renderer = Renderer::create(row.width, row.height, options);
+  options.threads = 1;
+  auto alone = Renderer::create(row.width, row.height, options);
+  const RenderQuality quality = quality_of(row);
   RgbImage image(row.width, row.height);
-  RenderQuality quality;
-  quality.texture = row.texture;
-  if (row.kind == Kind::supersampled || row.kind == Kind::shaded_once || row.kind == Kind::multisampled)
-    quality.samples = 16;
-  if (row.kind == Kind::shaded_once || row.kind == Kind::multisampled) quality.shading_samples = 1;
-  quality.cull_back_faces = true;
   RenderTargets targets;
   DepthImage depth(row.width, row.height);
   if (row.kind == Kind::depth)
@@ -241,16 +295,23 @@ void compare(const Row& row, int threads) {
   else
     targets.color = image.view();
   const GlFrame frame(row);
-  const GlScene gl(scene, camera, row.texture, !room);
-  Timing peer, ours;
+  const GlScene gl(view.scene, view.camera, row.texture, view.scene.materials[0].lit, row.phong);
+  Timing peer, ours, single;
   for (int i = 0; i < 2; ++i) frame.draw(gl);
   const clock_t start = clock();
   for (int i = 0; i < 8 || (i < 60 && clock() - start < CLOCKS_PER_SEC); ++i) {
     time_frame(peer, [&] { frame.draw(gl); });
-    time_frame(ours, [&] { (void)renderer->render(scene, camera, quality, targets); });
+    time_frame(ours, [&] { (void)renderer->render(view.scene, view.camera, quality, targets); });
+    if (threads > 1) time_frame(single, [&] { (void)alone->render(view.scene, view.camera, quality, targets); });
   }
-  std::printf("%-32s %9.2f %9.2f %8.2fx %11.2f %9.2f\n", row.name, peer.cpu_ms, ours.cpu_ms, ours.cpu_ms / peer.cpu_ms,
+  std::printf("%-32s %9.2f %9.2f %8.2fx %11.2f %9.2f", row.name, peer.cpu_ms, ours.cpu_ms, ours.cpu_ms / peer.cpu_ms,
               peer.wall_ms, ours.wall_ms);
+  if (threads > 1) std::printf(" %8.2fx, alone %.2f", single.wall_ms / ours.wall_ms, single.wall_ms);
+  if (row.leg > 0) {
+    const auto n = static_cast<double>(view.scene.mesh.faces.size());
+    std::printf("   %.1f / %.1f Mtri/s", n / peer.cpu_ms / 1e3, n / ours.cpu_ms / 1e3);
+  }
+  std::printf("\n");
   std::fflush(stdout);
 }
 
@@ -282,6 +343,8 @@ int main(int argc, char** argv) {
       {"pin 75k Gouraud 4x4 512", "pin", false, Kind::supersampled, 512, 512},
       {"pin 75k Gouraud once/4x4 512", "pin", false, Kind::shaded_once, 512, 512},
       {"pin 75k Gouraud once/MSAA4 512", "pin", false, Kind::multisampled, 512, 512},
+      {"pin 75k Phong 512", "pin", false, Kind::plain, 512, 512, true},
+      {"pin 3k Phong 512", "pin3k", false, Kind::plain, 512, 512, true},
       {"pin 3k Gouraud 512", "pin3k", false, Kind::plain, 512, 512},
       {"pin 3k Gouraud once/4x4 512", "pin3k", false, Kind::shaded_once, 512, 512},
       {"room Gouraud 1080", "room", false, Kind::plain, 1920, 1080},
@@ -289,6 +352,14 @@ int main(int argc, char** argv) {
       {"room Gouraud once/4x4 1080", "room", false, Kind::shaded_once, 1920, 1080},
       {"room trilinear once/4x4 1080", "room", true, Kind::shaded_once, 1920, 1080},
       {"pin 75k Gouraud 1080", "pin", false, Kind::plain, 1920, 1080},
+      {"pin 75k Phong 1080", "pin", false, Kind::plain, 1920, 1080, true},
+      {"sweep 1 px 512", "sheet", false, Kind::plain, 512, 512, false, 1},
+      {"sweep 2 px 512", "sheet", false, Kind::plain, 512, 512, false, 2},
+      {"sweep 4 px 512", "sheet", false, Kind::plain, 512, 512, false, 4},
+      {"sweep 8 px 512", "sheet", false, Kind::plain, 512, 512, false, 8},
+      {"sweep 16 px 512", "sheet", false, Kind::plain, 512, 512, false, 16},
+      {"sweep 64 px 512", "sheet", false, Kind::plain, 512, 512, false, 64},
+      {"sweep 256 px 512", "sheet", false, Kind::plain, 512, 512, false, 256},
   };
   const char* filter = argc > 2 ? argv[2] : "";
   for (const Row& row : rows)
