@@ -292,7 +292,7 @@ void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& t
     return;
   }
   const bool drop_back_faces = (*input.surfaces[0])[mesh.faces[triangle.face].material].drop_back_faces;
-  Candidate candidate;
+  Candidate candidate{};
   uint64_t drawn = 0, degenerate = 0;
   for (int i = 1; i + 1 < n; ++i) {
     const ScreenVertex triangle_corners[3] = {screen[0], screen[i], screen[i + 1]};
