@@ -144,8 +144,8 @@ TEST_CASE("isa lists every kernel") {
   const auto isa = json(folder.pac("isa --json"));
   size_t n_listed = 0;
   while (isa.contains("kernels[" + std::to_string(n_listed) + "].name")) ++n_listed;
-  const size_t n_kernels = (sizeof(pac::BlockKernels) + sizeof(pac::MotionKernels) + sizeof(pac::PixelKernels) +
-                            sizeof(pac::TileKernels) + sizeof(pac::WarpKernels)) /
+  const size_t n_kernels = (sizeof(pac::BlockKernels) + sizeof(pac::FrontKernels) + sizeof(pac::MotionKernels) +
+                            sizeof(pac::PixelKernels) + sizeof(pac::TileKernels) + sizeof(pac::WarpKernels)) /
                            sizeof(void*);
   CHECK(n_listed == n_kernels);
 }
