@@ -24,7 +24,7 @@ enum class Subsampling : uint8_t { yuv444, yuv422, yuv420, gray };
 // images of rendered scenes (many blocks of nothing but EOB), for one pass over those.
 enum class Huffman : uint8_t { standard, optimal, difference };
 enum class Effort : uint8_t { fast, normal, best };
-enum class Tune : uint8_t { psnr, ssim, visual };
+enum class Tune : uint8_t { psnr, ssim, visual, hvs };
 
 // Steps of the uniform quantizers, natural (row) order, 1..255 where an encoder takes them (a decoder: 1..65535).
 using QuantTable = std::array<uint16_t, 64>;
@@ -41,6 +41,7 @@ QuantTables annex_k_tables(double quality);
 //   psnr    nearly flat, 28 to 34, chroma 15 rising to 43 as 4:2:0 decoders blur it: least squared error of RGB
 //   ssim    flat 28, chroma 73 to 115: structure of luma
 //   visual  18 to 80, rising with frequency, chroma alike: what SSIMULACRA 2.1 sees
+//   hvs     8 for DC, then 9 to 163 as Annex K's rise, chroma 51 to 81: what PSNR-HVS-M sees, of luma
 QuantTables tuned_tables(Tune tune, double quality);
 
 // Tables for the difference image D = 127 + (H - L) / 2 [Levoy95 s.3]: every step halved, rounded up from .5, at
@@ -83,7 +84,7 @@ struct EncodeOptions {
   // For a difference image, whose errors will be seen in the composite: the picture that shall be seen, H. For ssim and
   // visual with the trellis, errors then hide where H is busy, not where the difference is. Same size, or empty.
   ConstRgbView seen{};
-  // Which errors hide, for the trellis: psnr: none; ssim, visual: those in busy luma blocks, as those tunings have it.
+  // Which errors hide, for the trellis: psnr: none; the others: those in busy luma blocks, as those tunings have it.
   // Empty: as `tune` says where tables are tuned, else psnr.
   std::optional<Tune> masking = {};
   Isa isa = best_isa();                  // results never depend on it
@@ -97,7 +98,7 @@ int row_restart_interval(int width, Subsampling subsampling);
 int row_restart_interval(int width, const SamplingFactors& sampling);
 
 // Presets. fast: tuned tables, standard Huffman tables, no dead zone. normal: fitted tables, optimal Huffman tables,
-// dead zone 0.18. best: adapted tables and the trellis, which for ssim and visual lets errors hide in busy blocks.
+// dead zone 0.18. best: adapted tables and the trellis, which but for psnr lets errors hide in busy blocks.
 EncodeOptions options_for(Effort effort, Tune tune, double quality);
 
 // A complete JFIF file. Image sides 1..65535. Errors: bad_argument (an option or a side out of range).

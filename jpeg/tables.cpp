@@ -71,8 +71,11 @@ double interpolated_energy(int u) {
 // psnr: an error of a chroma sample spreads over four pixels, which alone would make its step half of luma's; less so
 // at high frequencies, where the interpolation takes errors down as well. The exponent of that is less than theory's
 // 0.5: most chroma errors are zeroed coefficients.
+// hvs: PSNR-HVS-M weighs errors of luma by the steps of K.1, but lets more of them hide the larger those are, and none
+// of DC's; the rest found on training pictures.
 ReferenceSteps tuned_base(Tune tune) {
   constexpr double kFlatLuma = 28.0, kPsnrSlope = 0.2, kPsnrChroma = 0.55 * kFlatLuma, kPsnrExponent = -0.4;
+  constexpr double kHvsExponent = 0.15, kHvsChroma = 0.7;
   ReferenceSteps base;
   for (int i = 0; i < 64; ++i) {
     const int u = i % 8, v = i / 8, frequency = u + v;
@@ -88,6 +91,10 @@ ReferenceSteps tuned_base(Tune tune) {
       case Tune::visual:
         base.luma[i] = kVisualLuma[frequency];
         base.chroma[i] = kVisualChroma[frequency];
+        break;
+      case Tune::hvs:
+        base.luma[i] = kAnnexKLuma[i] * (i == 0 ? 0.5 : exact_pow(kAnnexKLuma[i] / 16.0, kHvsExponent));
+        base.chroma[i] = kHvsChroma * kSsimChroma[frequency];
         break;
     }
   }
@@ -166,6 +173,8 @@ ExchangeRates exchange_rates(Tune tune) {
       return {8.0, 14.0};
     case Tune::visual:
       return {10.0, 12.0};
+    case Tune::hvs:
+      return {7.0, 8.0};
     default:
       return {};
   }

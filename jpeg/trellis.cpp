@@ -53,8 +53,8 @@ float visibility(Tune tune, const int16_t* coefficients) {
   for (int i = 1; i < 64; ++i) sum += coefficients[i] * coefficients[i];
   // The transform is orthonormal but for kDctScale: its sum of squares is 64 times the variance.
   const float variance = static_cast<float>(sum) * (1.0f / (64 * kDctScale * kDctScale));
-  const float fourth_root = std::sqrt(std::sqrt(variance + kMaskFloor));
-  return 1.0f / (tune == Tune::ssim ? fourth_root * fourth_root * fourth_root : fourth_root);
+  const float root = std::sqrt(variance + kMaskFloor), fourth_root = std::sqrt(root);
+  return 1.0f / (tune == Tune::ssim ? root * fourth_root : tune == Tune::hvs ? root : fourth_root);
 }
 
 // Dynamic programming over the levels kept: node n is "the n-th candidate is kept, whatever precedes it". All costs are

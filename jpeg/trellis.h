@@ -34,8 +34,8 @@ void trellis_quantize(const int16_t* coefficients, const TrellisWeights& weights
                       const AcCosts& costs, int16_t* levels, uint64_t& nonzero);
 
 // How much a block's errors show beside others' [masking]. SSIM divides squared errors by the variance of the samples;
-// ssim: (variance + 100)^-0.75, visual: its third root, found best on training pictures because other blocks' bits
-// become too dear beyond; psnr: 1.
+// ssim: (variance + 100)^-0.75, visual: its third root, hvs: (variance + 100)^-0.5, found best on training pictures
+// because other blocks' bits become too dear beyond; psnr: 1.
 float visibility(Tune tune, const int16_t* coefficients);
 
 }  // namespace pac::jpeg

@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
   const std::pair<const char*, jpeg::Effort> efforts[] = {{"default", jpeg::Effort::normal},
                                                           {"best", jpeg::Effort::best}};
   const std::pair<const char*, jpeg::Tune> tunes[] = {
-      {"psnr", jpeg::Tune::psnr}, {"ssim", jpeg::Tune::ssim}, {"visual", jpeg::Tune::visual}};
+      {"psnr", jpeg::Tune::psnr}, {"ssim", jpeg::Tune::ssim}, {"visual", jpeg::Tune::visual}, {"hvs", jpeg::Tune::hvs}};
   for (const auto& [effort_name, effort] : efforts)
     for (const auto& [tune_name, tune] : tunes)
       settings.push_back({std::string(tune_name) + " " + effort_name, effort, tune});

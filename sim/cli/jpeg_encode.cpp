@@ -37,7 +37,8 @@ void declare(Options& options, Request& request) {
                                {"420", Subsampling::yuv420},
                                {"gray", Subsampling::gray}},
                               "of chroma (420)");
-  options.choice<Tune>("--tune", request.tune, {{"psnr", Tune::psnr}, {"ssim", Tune::ssim}, {"visual", Tune::visual}},
+  options.choice<Tune>("--tune", request.tune,
+                       {{"psnr", Tune::psnr}, {"ssim", Tune::ssim}, {"visual", Tune::visual}, {"hvs", Tune::hvs}},
                        "what the tables are made for (visual)");
   options.choice<Effort>(
       "--effort", request.effort, {{"fast", Effort::fast}, {"default", Effort::normal}, {"best", Effort::best}},
