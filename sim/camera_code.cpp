@@ -1,8 +1,8 @@
 #include "sim/camera_code.h"
 
-#include <array>
 #include <cmath>
-#include <cstring>
+
+#include "sim/float_code.h"
 
 namespace pac::sim {
 
@@ -76,10 +76,7 @@ class Predictor {
 
   // `known` holds what came before.
   float predict(Place place, const Numbers& known) const {
-    const float before = base_.at[place.row][place.column];
-    const double guess = rigid(place, known);
-    const bool is_float = std::fabs(guess) <= 3.4028234663852886e38;  // no NaN either: its bits differ between machines
-    return is_float ? static_cast<float>(guess) : before;
+    return float_guess(rigid(place, known), base_.at[place.row][place.column]);
   }
 
  private:
@@ -116,44 +113,6 @@ class Predictor {
   double depth_scale_ = 0, up_scale_ = 0;
 };
 
-// Floats in their order as integers: neighbors differ by one. A bijection of all 2^32 patterns.
-uint32_t ordered(float value) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return (bits >> 31) != 0 ? ~bits : bits | 0x80000000u;
-}
-
-float from_ordered(uint32_t value) {
-  const uint32_t bits = (value >> 31) != 0 ? value & 0x7FFFFFFFu : ~value;
-  float result;
-  std::memcpy(&result, &bits, sizeof bits);
-  return result;
-}
-
-uint32_t zigzag(uint32_t difference) {
-  return difference << 1 ^ ((difference >> 31) != 0 ? 0xFFFFFFFFu : 0u);
-}
-
-uint32_t unzigzag(uint32_t code) {
-  return code >> 1 ^ ((code & 1) != 0 ? 0xFFFFFFFFu : 0u);
-}
-
-// 0 for nothing; 1, five bits of length - 1, then the number without its leading one.
-void put_number(BitWriter& writer, uint32_t code) {
-  if (code == 0) return writer.put(0, 1);
-  int length = 1;
-  while (length < 32 && (code >> length) != 0) ++length;
-  writer.put(1, 1);
-  writer.put(static_cast<uint32_t>(length - 1), 5);
-  writer.put(code, length - 1);
-}
-
-uint32_t take_number(BitReader& reader) {
-  if (!reader.read_flag()) return 0;
-  const int rest = static_cast<int>(reader.read(5));
-  return uint32_t{1} << rest | reader.read(rest);
-}
-
 }  // namespace
 
 void write_camera_change(BitWriter& writer, const raster::Camera& camera, const raster::Camera& base) {
@@ -163,7 +122,7 @@ void write_camera_change(BitWriter& writer, const raster::Camera& camera, const 
   for (size_t step = 0; step < Predictor::kCount; ++step) {
     const Predictor::Place place = predictor.place(step);
     const float value = now.at[place.row][place.column];
-    put_number(writer, zigzag(ordered(value) - ordered(predictor.predict(place, known))));
+    put_float_change(writer, value, predictor.predict(place, known));
     known.at[place.row][place.column] = value;
   }
 }
@@ -174,8 +133,7 @@ raster::Camera read_camera_change(BitReader& reader, const raster::Camera& base)
   Numbers known;
   for (size_t step = 0; step < Predictor::kCount; ++step) {
     const Predictor::Place place = predictor.place(step);
-    const uint32_t change = unzigzag(take_number(reader));
-    known.at[place.row][place.column] = from_ordered(ordered(predictor.predict(place, known)) + change);
+    known.at[place.row][place.column] = take_float_change(reader, predictor.predict(place, known));
   }
   return camera_of(known);
 }
