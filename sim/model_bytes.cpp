@@ -6,6 +6,8 @@
 // and, where flag 4 says that any of it departs from its default: fog kind u8, color 3 f32, start, end, density f32 |
 //   environment u32 | of each material: anisotropy u8, alpha u8, cutoff f32, opacity f32, normal u32, its scale f32,
 //   specular u32, emission u32, reflection 3 f32, its blur f32
+// and, where flag 8 says that parts can move: objects u32 | object: first vertex u32, vertices u32, columns of its
+//   transform 4 x 3 f32
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -18,8 +20,9 @@ namespace pac::sim {
 
 namespace {
 
-constexpr uint8_t kNormals = 1, kTexcoords = 2, kLooks = 4;
-constexpr size_t kMaterialBytes = 60, kLightBytes = 56, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12;
+constexpr uint8_t kNormals = 1, kTexcoords = 2, kLooks = 4, kObjects = 8;
+constexpr size_t kMaterialBytes = 60, kLightBytes = 56, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12,
+                 kObjectBytes = 56;
 
 void write_vec3(ByteWriter& writer, const glm::vec3& v) {
   for (int axis = 0; axis < 3; ++axis) writer.f32(v[axis]);
@@ -229,6 +232,35 @@ Result<void> read_looks(ByteReader& reader, uint32_t n_textures, raster::Scene& 
   return {};
 }
 
+void write_objects(ByteWriter& writer, const raster::Scene& scene) {
+  writer.u32(static_cast<uint32_t>(scene.objects.size()));
+  for (const raster::Object& object : scene.objects) {
+    writer.u32(object.first_vertex);
+    writer.u32(object.vertex_count);
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row) writer.f32(object.world_from_object[column][row]);
+  }
+}
+
+Result<void> read_objects(ByteReader& reader, raster::Scene& scene) {
+  const size_t at = reader.position();
+  const uint64_t n_objects = reader.u32();
+  if (n_objects * kObjectBytes > reader.remaining())
+    return Failure{Error::truncated, at, "model is shorter than its objects"};
+  for (uint64_t i = 0; i < n_objects; ++i) {
+    raster::Object object;
+    object.first_vertex = reader.u32();
+    object.vertex_count = reader.u32();
+    for (int column = 0; column < 4; ++column)
+      for (int row = 0; row < 3; ++row) object.world_from_object[column][row] = reader.f32();
+    object.previous_world_from_object = object.world_from_object;
+    scene.objects.push_back(object);
+  }
+  const Result<void> checked = check_objects(scene);
+  if (!checked.ok()) return Failure{Error::corrupt, at, checked.failure().text};
+  return {};
+}
+
 bool any_lit(const raster::Scene& scene) {
   for (const raster::Material& material : scene.materials)
     if (material.lit) return true;
@@ -241,7 +273,7 @@ Bytes serialize_model(const raster::Scene& scene, bool wants_texture) {
   const bool textured = wants_texture || has_masks(scene);
   const bool texcoords = textured && !scene.textures.empty();
   const auto fields = static_cast<uint8_t>((any_lit(scene) ? kNormals : 0) | (texcoords ? kTexcoords : 0) |
-                                           (has_looks(scene) ? kLooks : 0));
+                                           (has_looks(scene) ? kLooks : 0) | (scene.objects.empty() ? 0 : kObjects));
   ByteWriter writer;
   writer.u8(fields);
   for (const size_t count : {scene.mesh.vertices.size(), scene.mesh.faces.size(), scene.materials.size(),
@@ -254,6 +286,7 @@ Bytes serialize_model(const raster::Scene& scene, bool wants_texture) {
   for (const raster::Texture& texture : scene.textures) write_texture(writer, texture, textured);
   for (const raster::Light& light : scene.lights) write_light(writer, light);
   if ((fields & kLooks) != 0) write_looks(writer, scene);
+  if ((fields & kObjects) != 0) write_objects(writer, scene);
   return writer.take();
 }
 
@@ -261,7 +294,8 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
   if (bytes.size() > limits.max_bytes) return Failure{Error::limit_exceeded, 0, "model has more bytes than the limit"};
   ByteReader reader(bytes);
   const uint8_t fields = reader.u8();
-  if ((fields & ~(kNormals | kTexcoords | kLooks)) != 0) return Failure{Error::unsupported, 0, "unknown vertex fields"};
+  if ((fields & ~(kNormals | kTexcoords | kLooks | kObjects)) != 0)
+    return Failure{Error::unsupported, 0, "unknown vertex fields"};
   const uint64_t n_vertices = reader.u32(), n_faces = reader.u32(), n_materials = reader.u32();
   const uint32_t n_textures = reader.u32(), n_lights = reader.u32();
   // Before anything is allocated: the counts must fit the bytes that are there.
@@ -290,6 +324,7 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
     scene.lights.push_back(light);
   }
   if ((fields & kLooks) != 0) PAC_CHECK(read_looks(reader, n_textures, scene));
+  if ((fields & kObjects) != 0) PAC_CHECK(read_objects(reader, scene));
   if (reader.overrun()) return Failure{Error::truncated, bytes.size(), "model ends early"};
   if (reader.remaining() != 0) return Failure{Error::corrupt, reader.position(), "bytes after the end of the model"};
   PAC_CHECK(validate(scene.mesh, static_cast<uint32_t>(n_materials), limits));

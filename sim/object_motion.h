@@ -21,8 +21,8 @@ bool is_transform(const glm::mat4& matrix);
 // Same bits.
 bool same_transform(const glm::mat4& a, const glm::mat4& b);
 
-// Moves the objects; where they were become their previous transforms. Fails with bad_argument, and moves nothing: their
-// number differs, or not is_transform() (Failure::byte_offset is which).
+// Moves the objects; where they were become their previous transforms. Fails with bad_argument, and moves nothing:
+// their number differs, or not is_transform() (Failure::byte_offset is which).
 Result<void> move_objects(std::span<const glm::mat4> transforms, raster::Scene& scene);
 
 // Fails with corrupt where an object has vertices that the mesh has not, two share a vertex, or a transform is none

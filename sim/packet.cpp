@@ -1,10 +1,12 @@
 #include "sim/packet.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/checksum.h"
 #include "sim/byte_stream.h"
 #include "sim/camera_code.h"
+#include "sim/object_code.h"
 
 namespace pac::sim {
 
@@ -13,7 +15,7 @@ namespace {
 constexpr uint32_t kFrameMagic = 0x46434150;    // "PACF"
 constexpr uint32_t kSessionMagic = 0x4D434150;  // "PACM"
 constexpr size_t kCrcBytes = 4;
-constexpr uint8_t kHasModel = 1;
+constexpr uint8_t kHasModel = 1, kMovesObjects = 2;
 constexpr uint8_t kShortMagic = 0xF1;
 // Less than 256, so that the next whole packet's number differs in its low 8 bits.
 constexpr uint32_t kMostFramesSince = 250;
@@ -73,26 +75,61 @@ Result<raster::RenderQuality> read_render_quality(ByteReader& reader) {
   return quality;
 }
 
+bool same_transforms(std::span<const glm::mat4> a, std::span<const glm::mat4> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_transform);
+}
+
+// False where one is none that a model can have.
+bool are_transforms(const Transforms& objects) {
+  return std::all_of(objects.begin(), objects.end(), is_transform);
+}
+
+// What `packet` says of objects, `rest` where it says nothing.
+std::span<const glm::mat4> objects_of(const FramePacket& packet, std::span<const glm::mat4> rest) {
+  PAC_ASSERT(packet.objects.empty() || packet.objects.size() == rest.size());
+  return packet.objects.empty() ? rest : packet.objects;
+}
+
+// Behind the fixed fields of a whole packet.
+Result<Transforms> read_objects(ByteReader& reader, std::span<const uint8_t> body, std::span<const glm::mat4> rest) {
+  const size_t at = reader.position();
+  if (rest.empty()) return Failure{Error::corrupt, 7, "packet moves objects that the model does not have"};
+  BitReader bits(body.subspan(at));
+  Transforms objects = read_object_changes(bits, rest);
+  bits.align_to_byte();
+  if (bits.overrun()) return Failure{Error::truncated, body.size(), "packet ends inside its objects"};
+  if (!are_transforms(objects)) return Failure{Error::corrupt, at, "object's transform is not finite"};
+  reader.raw(bits.byte_offset());
+  return objects;
+}
+
 }  // namespace
 
-Bytes write_frame_packet(const FramePacket& packet) {
+Bytes write_frame_packet(const FramePacket& packet, std::span<const glm::mat4> rest) {
+  const std::span<const glm::mat4> objects = objects_of(packet, rest);
+  const bool moves = !same_transforms(objects, rest);
   ByteWriter writer;
   writer.u32(kFrameMagic);
   writer.u16(kProtocolVersion);
   writer.u8(static_cast<uint8_t>(packet.codec));
-  writer.u8(packet.has_model ? kHasModel : 0);
+  writer.u8(static_cast<uint8_t>((packet.has_model ? kHasModel : 0) | (moves ? kMovesObjects : 0)));
   writer.u32(packet.frame);
   write_camera(writer, packet.camera);
   writer.f64(packet.quality);
   writer.u64(packet.low_hash);
   writer.u32(static_cast<uint32_t>(packet.model.size()));
   writer.u32(static_cast<uint32_t>(packet.difference.size()));
+  if (moves) {
+    BitWriter changes;
+    write_object_changes(changes, objects, rest);
+    writer.raw(changes.take());
+  }
   writer.raw(packet.model);
   writer.raw(packet.difference);
   return with_crc(writer);
 }
 
-Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes) {
+Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes, std::span<const glm::mat4> rest) {
   PAC_TRY(const auto body, checked_body(bytes, kFrameMagic));
   ByteReader reader(body);
   reader.raw(6);
@@ -100,9 +137,9 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes) {
   const uint8_t codec = reader.u8(), flags = reader.u8();
   if (codec != static_cast<uint8_t>(Codec::jpeg) && codec != static_cast<uint8_t>(Codec::mpeg1))
     return Failure{Error::unsupported, 6, "unknown codec"};
-  if ((flags & ~kHasModel) != 0) return Failure{Error::unsupported, 7, "unknown flag"};
+  if ((flags & ~(kHasModel | kMovesObjects)) != 0) return Failure{Error::unsupported, 7, "unknown flag"};
   packet.codec = static_cast<Codec>(codec);
-  packet.has_model = flags != 0;
+  packet.has_model = (flags & kHasModel) != 0;
   packet.frame = reader.u32();
   if (!read_camera(reader, packet.camera)) return Failure{Error::corrupt, 12, "camera is not finite"};
   packet.quality = reader.f64();
@@ -110,6 +147,10 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes) {
   const size_t lengths_at = reader.position();
   const uint64_t model_bytes = reader.u32(), difference_bytes = reader.u32();
   if (reader.overrun()) return Failure{Error::truncated, body.size(), "packet ends inside its header"};
+  packet.objects.assign(rest.begin(), rest.end());
+  if ((flags & kMovesObjects) != 0) {
+    PAC_TRY(packet.objects, read_objects(reader, body, rest));
+  }
   if (model_bytes + difference_bytes > reader.remaining())
     return Failure{Error::truncated, lengths_at, "packet is shorter than its parts"};
   if (model_bytes + difference_bytes < reader.remaining())
@@ -154,9 +195,11 @@ Result<FramePacket> read_short(std::span<const uint8_t> bytes, const std::option
   packet.low_hash = head.u32();
   BitReader bits(body.subspan(kShortHead));
   packet.camera = read_camera_change(bits, whole->camera);
+  packet.objects = read_object_changes(bits, whole->objects);
   bits.align_to_byte();
   if (bits.overrun()) return Failure{Error::truncated, body.size(), "packet ends inside its header"};
   if (!is_finite(packet.camera)) return Failure{Error::corrupt, kShortHead, "camera is not finite"};
+  if (!are_transforms(packet.objects)) return Failure{Error::corrupt, kShortHead, "object's transform is not finite"};
   packet.difference = body.subspan(kShortHead + static_cast<size_t>(bits.byte_offset()));
   return packet;
 }
@@ -166,17 +209,20 @@ Result<FramePacket> read_short(std::span<const uint8_t> bytes, const std::option
 Bytes PacketWriter::write(const FramePacket& packet, bool stands_alone) {
   const uint32_t distance = whole_ ? packet.frame - whole_->frame : 0;
   if (stands_alone || packet.codec != Codec::mpeg1 || packet.has_model || distance < 1 || distance > kMostFramesSince) {
+    const std::span<const glm::mat4> objects = objects_of(packet, rest_);
     whole_ = without_bytes(packet);
-    return write_frame_packet(packet);
+    whole_->objects.assign(objects.begin(), objects.end());
+    return write_frame_packet(packet, rest_);
   }
   ByteWriter writer;
   writer.u8(kShortMagic);
   writer.u8(static_cast<uint8_t>(whole_->frame));
   writer.u8(static_cast<uint8_t>(distance));
   writer.u32(static_cast<uint32_t>(packet.low_hash));
-  BitWriter camera;
-  write_camera_change(camera, packet.camera, whole_->camera);
-  writer.raw(camera.take());
+  BitWriter changes;
+  write_camera_change(changes, packet.camera, whole_->camera);
+  write_object_changes(changes, objects_of(packet, rest_), whole_->objects);
+  writer.raw(changes.take());
   writer.raw(packet.difference);
   return with_crc(writer);
 }
@@ -187,7 +233,7 @@ uint64_t PacketWriter::overhead_bytes(FramePacket packet, bool stands_alone) con
 
 Result<FramePacket> PacketReader::read(std::span<const uint8_t> bytes) {
   if (!bytes.empty() && bytes[0] == kShortMagic) return read_short(bytes, whole_);
-  PAC_TRY(const FramePacket packet, read_frame_packet(bytes));
+  PAC_TRY(const FramePacket packet, read_frame_packet(bytes, rest_));
   whole_ = without_bytes(packet);
   return packet;
 }
