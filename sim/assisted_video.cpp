@@ -9,6 +9,7 @@
 #include "sim/difference.h"
 #include "sim/frame420.h"
 #include "sim/model_prediction.h"
+#include "sim/object_motion.h"
 #include "sim/signed_composite.h"
 
 namespace pac::sim {
@@ -80,11 +81,12 @@ class SharedState {
         base_(scene.width, scene.height),
         coded_(scene.width, scene.height),
         predictor_(scene.width, scene.height, surfaces_of(*scene.low), first_sample(scene.samples).x / 256.0,
-                   first_sample(scene.samples).y / 256.0, isa) {}
+                   first_sample(scene.samples).y / 256.0, isa, movers_of(*scene.low)) {}
 
   // The picture that predicts this frame, or null where the codec's own does.
   const Frame420* reference(Prediction prediction, Difference difference, bool is_key, ConstRgbView low,
-                            PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera) {
+                            PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
+                            std::span<const glm::mat4> objects) {
     is_full_ = difference == Difference::full;
     if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return nullptr;
     if (is_full_)
@@ -92,7 +94,7 @@ class SharedState {
     else
       fill_gray();
     if (is_key || prediction == Prediction::none) predictor_.forget();
-    return &predictor_.reference(base_, depth, id, camera);
+    return &predictor_.reference(base_, depth, id, camera, objects);
   }
 
   // What the codec made of it.
@@ -205,7 +207,7 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   }
   mpeg1::PictureOptions picture;
   picture.reference = s.shared.reference(options.prediction, options.difference, is_key, frame.low, frame.depth,
-                                         frame.id, frame.camera);
+                                         frame.id, frame.camera, frame.objects);
   const bool replaced = picture.reference != nullptr;
   picture.type = replaced || !is_key ? mpeg1::PictureType::P : mpeg1::PictureType::I;
   AssistedVideoOptions wanted = options;
@@ -282,7 +284,8 @@ bool AssistedDecoder::last_was_key() const {
 }
 
 Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
-                                     PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown) {
+                                     PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown,
+                                     std::span<const glm::mat4> objects) {
   State& s = *state_;
   if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
   const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
@@ -292,8 +295,8 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   const bool is_full = (bytes[0] & kFull) != 0;
   if (is_full && kind == Prediction::block) return Failure{Error::corrupt, 0, "block prediction of full differences"};
   s.was_key = (bytes[0] & kKey) != 0;
-  s.reference =
-      s.shared.reference(kind, is_full ? Difference::full : Difference::halved, s.was_key, low, depth, id, camera);
+  s.reference = s.shared.reference(kind, is_full ? Difference::full : Difference::halved, s.was_key, low, depth, id,
+                                   camera, objects);
   s.decoder.feed(bytes.subspan(1));
   s.decoder.end_picture();
   PAC_TRY(const mpeg1::DecodedPicture* picture, s.decoder.next());

@@ -51,7 +51,8 @@ struct AssistedFrame {
   PlaneView<const float> depth;
   PlaneView<const uint32_t> id;
   const raster::Camera& camera;
-  uint64_t overhead_bytes = 0;  // of its packet beside the code: the bit rate pays for it
+  uint64_t overhead_bytes = 0;              // of its packet beside the code: the bit rate pays for it
+  std::span<const glm::mat4> objects = {};  // world from object of each object of L; empty: nothing moves
 };
 
 // What both sides know of the pictures before the first one.
@@ -109,9 +110,10 @@ class AssistedDecoder {
 
   // One frame's bytes and the client's own rendering of it become the picture to show. Fails with truncated or corrupt;
   // the next picture that stands alone puts everything right again. Where a frame before was lost, model prediction
-  // goes on from the last one that arrived: approximate until then.
+  // goes on from the last one that arrived: approximate until then. objects: as AssistedFrame's.
   Result<void> decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
-                      PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown);
+                      PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown,
+                      std::span<const glm::mat4> objects = {});
 
   // The last picture stood alone.
   bool last_was_key() const;

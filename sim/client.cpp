@@ -54,6 +54,7 @@ Result<Client> Client::create(std::span<const uint8_t> session, const ClientOpti
   renderer_options.threads = options.threads;
   renderer_options.isa = options.isa;
   PAC_TRY(raster::Renderer renderer, raster::Renderer::create(message.width, message.height, renderer_options));
+  PacketReader packets(transforms_of(model));
   return Client(std::make_unique<State>(State{options,
                                               message.width,
                                               message.height,
@@ -69,7 +70,7 @@ Result<Client> Client::create(std::span<const uint8_t> session, const ClientOpti
                                               {},
                                               {},
                                               std::nullopt,
-                                              {}}));
+                                              std::move(packets)}));
 }
 
 Client::Client(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -116,6 +117,7 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
     PAC_CHECK(draw_screen_model(state.renderer, packet.model, state.quality, state.background, state.low.view(),
                                 state.options.limits));
   } else {
+    PAC_CHECK(move_objects(packet.objects, state.model));
     PAC_CHECK(state.renderer.render(state.model, packet.camera, state.quality, targets));
   }
   const bool in_order = state.started && packet.frame == state.frame_number + 1;
@@ -128,7 +130,7 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   RgbImage picture(state.width, state.height);
   state.exact = state.exact && in_order;
   PAC_CHECK(state.video->decode(packet.difference, state.low.view(), state.depth.view(), state.id.view(), packet.camera,
-                                picture.view()));
+                                picture.view(), packet.objects));
   state.exact = state.exact || state.video->last_was_key();
   state.started = true;
   return picture;

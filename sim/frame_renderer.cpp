@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "raster/pose.h"
 #include "sim/difference.h"
 
 namespace pac::sim {
@@ -21,6 +22,10 @@ Result<FrameRenderer> FrameRenderer::create(const SceneSet& scene, const Split& 
   const raster::Scene& low = split.low_model == Model::coarse ? scene.coarse : scene.fine;
   if (transmit_model && split.low.texture && has_texture(low))
     return Failure{Error::bad_argument, 0, "a model whose low-quality rendering is textured cannot be transmitted"};
+  if (low.objects.size() != scene.fine.objects.size())
+    return Failure{Error::bad_argument, 0, "both models must have the same objects"};
+  PAC_CHECK(check_objects(scene.fine));
+  PAC_CHECK(check_objects(low));
   if (width < 1 || width > 65535 || height < 1 || height > 65535)
     return Failure{Error::bad_argument, 0, "picture sides must be 1..65535"};
   raster::RendererOptions options;
@@ -38,10 +43,23 @@ FrameRenderer::FrameRenderer(raster::Renderer renderer, const SceneSet& scene, c
       transmit_model_(transmit_model),
       width_(width),
       height_(height),
-      isa_(isa) {}
+      isa_(isa) {
+  follow(scene.fine);
+}
+
+// Ranges of vertices differ between the models, transforms do not.
+void FrameRenderer::follow(const raster::Scene& fine) {
+  for (size_t i = 0; i < low_scene_.objects.size(); ++i) {
+    low_scene_.objects[i].world_from_object = fine.objects[i].world_from_object;
+    low_scene_.objects[i].previous_world_from_object = fine.objects[i].previous_world_from_object;
+  }
+}
 
 Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::Camera& camera, bool with_geometry) {
+  PAC_ASSERT(scene.fine.objects.size() == low_scene_.objects.size());
+  follow(scene.fine);
   FrameImages images;
+  images.objects = transforms_of(scene.fine);
   if (with_geometry) {
     images.depth = DepthImage(width_, height_);
     images.id = IdImage(width_, height_);
@@ -69,7 +87,14 @@ Result<void> FrameRenderer::draw_low(const raster::Camera& camera, FrameImages& 
         renderer_.render(low_scene_, camera, split_.low, {images.low.view(), images.depth.view(), images.id.view()}));
     return {};
   }
-  PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_));
+  if (low_scene_.objects.empty()) {
+    PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_));
+  } else {
+    raster::Scene posed = low_scene_;
+    PAC_CHECK(raster::pose_mesh(low_scene_, posed.mesh));
+    posed.objects.clear();
+    PAC_TRY(images.model, encode_screen_model(posed, camera, split_.low, width_, height_));
+  }
   return draw_screen_model(renderer_, images.model.bytes, split_.low, low_scene_.background, images.low.view());
 }
 

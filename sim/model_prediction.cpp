@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <unordered_map>
 #include <utility>
 
 #include "base/kernels/kernels.h"
@@ -87,16 +88,23 @@ void BorderedPlane::extend() {
 }
 
 std::vector<uint32_t> surfaces_of(const raster::Scene& low) {
+  const std::vector<uint32_t> movers = movers_of(low);
+  std::unordered_map<uint64_t, uint32_t> number_of;
   std::vector<uint32_t> surfaces(low.mesh.faces.size() + 1);
-  for (size_t face = 0; face < low.mesh.faces.size(); ++face) surfaces[face + 1] = low.mesh.faces[face].material + 1;
+  for (size_t face = 0; face < low.mesh.faces.size(); ++face) {
+    const uint64_t mover = movers.empty() ? kStands : movers[face + 1];
+    const auto next = static_cast<uint32_t>(number_of.size() + 1);
+    surfaces[face + 1] = number_of.try_emplace(mover << 32 | low.mesh.faces[face].material, next).first->second;
+  }
   return surfaces;
 }
 
 ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surfaces, double sample_x, double sample_y,
-                               Isa isa)
+                               Isa isa, std::vector<uint32_t> movers)
     : width_(width),
       height_(height),
       surfaces_(std::move(surfaces)),
+      movers_(std::move(movers)),
       sample_x_(sample_x),
       sample_y_(sample_y),
       isa_(isa),
@@ -131,6 +139,25 @@ void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const 
   }
 }
 
+// One way through the two cameras for what stands, one more for each object that moved since.
+void ModelPredictor::find_flow(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
+                               std::span<const glm::mat4> objects) {
+  std::vector<Reprojection> ways = {Reprojection(camera, camera_, width_, height_, sample_x_, sample_y_)};
+  std::vector<uint32_t> way_of_mover(objects.size() + 1, 0);
+  const size_t n_known = movers_.empty() ? 0 : std::min(objects.size(), objects_.size());
+  for (size_t i = 0; i < n_known; ++i) {
+    if (same_transform(objects[i], objects_[i])) continue;
+    way_of_mover[i + 1] = static_cast<uint32_t>(ways.size());
+    ways.emplace_back(MovedView{camera, objects[i]}, MovedView{camera_, objects_[i]}, width_, height_, sample_x_,
+                      sample_y_);
+  }
+  if (ways.size() == 1) return reproject(ways[0], depth, flow_, isa_);
+  std::vector<uint32_t> way_of_id(movers_.size(), 0);
+  for (size_t i = 0; i < movers_.size(); ++i)
+    way_of_id[i] = movers_[i] < way_of_mover.size() ? way_of_mover[movers_[i]] : kNoWay;
+  reproject(ways, way_of_id, depth, id, flow_, isa_);
+}
+
 void ModelPredictor::carry(bool chroma, const Frame420& base) {
   const size_t level = chroma ? 1 : 0;
   RowCarrier carrier(now_[level], before_[level], flow_, chroma, *kernels_for(isa_));
@@ -153,12 +180,13 @@ void ModelPredictor::carry(bool chroma, const Frame420& base) {
 }
 
 const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const float> depth,
-                                          PlaneView<const uint32_t> id, const raster::Camera& camera) {
+                                          PlaneView<const uint32_t> id, const raster::Camera& camera,
+                                          std::span<const glm::mat4> objects) {
   PAC_ASSERT(base.width() == width_ && base.height() == height_);
   map_surfaces(depth, id, now_[0], now_[1]);
   stats_ = {};
   if (has_kept_) {
-    reproject(Reprojection(camera, camera_, width_, height_, sample_x_, sample_y_), depth, flow_, isa_);
+    find_flow(depth, id, camera, objects);
     carry(false, base);
     carry(true, base);
   } else {
@@ -169,6 +197,7 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
     }
   }
   camera_ = camera;
+  objects_.assign(objects.begin(), objects.end());
   return reference_;
 }
 

@@ -1,19 +1,21 @@
 // Model prediction: the difference that was decoded for the frame before, carried to where the model says that its
 // surfaces are now. Server and client run the same code on the same numbers.
 //
-//   depth, cameras -> flow -> visibility (surface and depth) -> filter -> carried difference -> + base -> reference
-//   coded picture - base -> difference, kept for the next frame
+//   depth, cameras, objects -> flow -> visibility (surface and depth) -> filter -> carried difference -> + base ->
+//   reference coded picture - base -> difference, kept for the next frame
 // The base is the client's own rendering L (so that the reference predicts H itself), or gray (the paper's D form). All
 // in 4:2:0; chroma is carried at its own resolution. Where the frame before does not show the surface, the carried
 // difference is 0: the reference is the base.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/image.h"
 #include "base/isa.h"
 #include "raster/scene.h"
+#include "sim/object_motion.h"
 #include "sim/reprojection.h"
 
 namespace pac::sim {
@@ -42,8 +44,8 @@ struct SurfaceMap {
   GrayImage smooth;  // 1: the 6x6 taps around all lie on this surface, without a jump in depth
 };
 
-// Faces to surfaces: one number a material, so that differences flow across the edges of a mesh but not from one
-// material to another. Index = id of the rasterizer (face + 1); [0] is the background.
+// Faces to surfaces: one number a material and object, so that differences flow across the edges of a mesh but not from
+// one material or object to another. Index = id of the rasterizer (face + 1); [0] is the background.
 std::vector<uint32_t> surfaces_of(const raster::Scene& low);
 
 struct PredictionStats {
@@ -54,14 +56,14 @@ struct PredictionStats {
 class ModelPredictor {
  public:
   // `surfaces`: surfaces_of() the scene that L draws; sample_x, sample_y: where in a pixel the rasterizer takes depth
-  // and id, 0..1.
+  // and id, 0..1; `movers`: movers_of() that scene, empty where nothing moves.
   ModelPredictor(int width, int height, std::vector<uint32_t> surfaces, double sample_x, double sample_y,
-                 Isa isa = best_isa());
+                 Isa isa = best_isa(), std::vector<uint32_t> movers = {});
 
-  // The reference picture for a frame with that base, depth and ids of L, and camera. After the first call and after
-  // forget() it is the base itself. Valid until the next call.
+  // The reference picture for a frame with that base, depth and ids of L, camera and transforms of its objects (as many
+  // each time, or none). After the first call and after forget() it is the base itself. Valid until the next call.
   const Frame420& reference(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id,
-                            const raster::Camera& camera);
+                            const raster::Camera& camera, std::span<const glm::mat4> objects = {});
 
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr, const Frame420& base);
@@ -76,14 +78,17 @@ class ModelPredictor {
 
  private:
   void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma, SurfaceMap& chroma);
+  void find_flow(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
+                 std::span<const glm::mat4> objects);
   void carry(bool chroma, const Frame420& base);
 
   int width_, height_;
-  std::vector<uint32_t> surfaces_;
+  std::vector<uint32_t> surfaces_, movers_;
   double sample_x_, sample_y_;
   Isa isa_;
   bool has_kept_ = false;
-  raster::Camera camera_;
+  raster::Camera camera_;  // of the frame whose reference was asked for last
+  Transforms objects_;
   Flow flow_;
   SurfaceMap now_[2], before_[2];  // luma, chroma
   BorderedPlane kept_[3];

@@ -1,5 +1,6 @@
 #include "sim/reprojection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -22,11 +23,15 @@ Matrix operator*(const Matrix& a, const Matrix& b) {
   return product;
 }
 
-Matrix matrix_of(const raster::Camera& camera) {
+Matrix matrix_of(const glm::mat4& m) {
   Matrix matrix;
   for (int r = 0; r < 4; ++r)
-    for (int c = 0; c < 4; ++c) matrix.at[r][c] = static_cast<double>(camera.clip_from_world[c][r]);
+    for (int c = 0; c < 4; ++c) matrix.at[r][c] = static_cast<double>(m[c][r]);
   return matrix;
+}
+
+Matrix matrix_of(const MovedView& view) {
+  return matrix_of(view.camera.clip_from_world) * matrix_of(view.world_from_object);
 }
 
 void swap_rows(Matrix& matrix, int a, int b) {
@@ -86,20 +91,43 @@ Matrix pixel_from_clip(int width, int height, double sample_x, double sample_y) 
   return matrix;
 }
 
+struct Window {
+  int width, height;
+  double sample_x, sample_y;
+};
+
+Matrix window_from_window(const Matrix& from, const Matrix& to, const Window& w) {
+  return (pixel_from_clip(w.width, w.height, w.sample_x, w.sample_y) * to) *
+         (inverse(from) * clip_from_pixel(w.width, w.height, w.sample_x, w.sample_y));
+}
+
+void make_flow(int width, int height, Flow& flow) {
+  if (flow.x_64.width() == width && flow.x_64.height() == height) return;
+  flow = {Image<int32_t, 1>(width, height), Image<int32_t, 1>(width, height), DepthImage(width, height)};
+}
+
 }  // namespace
 
 Reprojection::Reprojection(const raster::Camera& from, const raster::Camera& to, int width, int height, double sample_x,
                            double sample_y) {
-  const Matrix all = (pixel_from_clip(width, height, sample_x, sample_y) * matrix_of(to)) *
-                     (inverse(matrix_of(from)) * clip_from_pixel(width, height, sample_x, sample_y));
+  const Matrix all = window_from_window(matrix_of(from.clip_from_world), matrix_of(to.clip_from_world),
+                                        {width, height, sample_x, sample_y});
   for (int r = 0; r < 4; ++r)
     for (int c = 0; c < 4; ++c) matrix_[r][c] = all.at[r][c];
 }
 
-ReprojectionRow Reprojection::row(int y) const {
+Reprojection::Reprojection(const MovedView& from, const MovedView& to, int width, int height, double sample_x,
+                           double sample_y) {
+  const Matrix all = window_from_window(matrix_of(from), matrix_of(to), {width, height, sample_x, sample_y});
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) matrix_[r][c] = all.at[r][c];
+}
+
+ReprojectionRow Reprojection::row(int y, int first) const {
   ReprojectionRow row;
   for (int c = 0; c < 4; ++c) {
-    row.origin[c] = static_cast<float>(matrix_[c][3] + matrix_[c][1] * y);
+    const double at_left = matrix_[c][3] + matrix_[c][1] * y;
+    row.origin[c] = static_cast<float>(first == 0 ? at_left : at_left + matrix_[c][0] * first);
     row.per_pixel[c] = static_cast<float>(matrix_[c][0]);
     row.per_depth[c] = static_cast<float>(matrix_[c][2]);
   }
@@ -107,14 +135,39 @@ ReprojectionRow Reprojection::row(int y) const {
 }
 
 void reproject(const Reprojection& reprojection, PlaneView<const float> depth, Flow& flow, Isa isa) {
-  if (flow.x_64.width() != depth.width || flow.x_64.height() != depth.height)
-    flow = {Image<int32_t, 1>(depth.width, depth.height), Image<int32_t, 1>(depth.width, depth.height),
-            DepthImage(depth.width, depth.height)};
+  make_flow(depth.width, depth.height, flow);
   const Kernels* table = kernels_for(isa);
   PAC_ASSERT(table != nullptr);
   for (int y = 0; y < depth.height; ++y)
     table->warp.reproject_row(reprojection.row(y), depth.row(y), static_cast<size_t>(depth.width), flow.x_64.row(y),
                               flow.y_64.row(y), flow.u_before.row(y));
+}
+
+void reproject(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, PlaneView<const float> depth,
+               PlaneView<const uint32_t> id, Flow& flow, Isa isa) {
+  make_flow(depth.width, depth.height, flow);
+  const Kernels* table = kernels_for(isa);
+  PAC_ASSERT(table != nullptr && !ways.empty());
+  for (int y = 0; y < depth.height; ++y) {
+    const uint32_t* ids = id.row(y);
+    const auto way_at = [&](int x) { return ids[x] < way_of_id.size() ? way_of_id[ids[x]] : 0; };
+    for (int first = 0; first < depth.width;) {
+      const uint32_t way = way_at(first);
+      int end = first + 1;
+      while (end < depth.width && way_at(end) == way) ++end;
+      const auto n = static_cast<size_t>(end - first);
+      int32_t *x_64 = flow.x_64.row(y) + first, *y_64 = flow.y_64.row(y) + first;
+      float* u_before = flow.u_before.row(y) + first;
+      if (way == kNoWay) {
+        std::fill_n(x_64, n, kWarpNowhere);
+        std::fill_n(y_64, n, kWarpNowhere);
+        std::fill_n(u_before, n, 0.0f);
+      } else {
+        table->warp.reproject_row(ways[way].row(y, first), depth.row(y) + first, n, x_64, y_64, u_before);
+      }
+      first = end;
+    }
+  }
 }
 
 }  // namespace pac::sim

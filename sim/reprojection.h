@@ -1,8 +1,8 @@
-// Where each pixel's content was one frame earlier, from depth and two cameras: no search, no bits [Levoy95 s.5,
-// Wallach 94, Guenter 93].
+// Where each pixel's content was one frame earlier, from depth, two cameras and where objects were: no search, no bits
+// [Levoy95 s.5, Wallach 94, Guenter 93].
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "base/image.h"
 #include "base/isa.h"
@@ -18,6 +18,12 @@ struct Flow {
   DepthImage u_before;
 };
 
+// An object's vertices as a camera sees them; `world_from_object` is affine.
+struct MovedView {
+  const raster::Camera& camera;
+  const glm::mat4& world_from_object;
+};
+
 // The map from (x, y, 1 - depth) of one window to homogeneous (x, y, 1 - depth, w) of another, linear in all three.
 class Reprojection {
  public:
@@ -26,8 +32,11 @@ class Reprojection {
   Reprojection(const raster::Camera& from, const raster::Camera& to, int width, int height, double sample_x,
                double sample_y);
 
-  // The part of row y that does not depend on depth and column.
-  ReprojectionRow row(int y) const;
+  // Of an object that moved. Where its volume vanished nothing is found.
+  Reprojection(const MovedView& from, const MovedView& to, int width, int height, double sample_x, double sample_y);
+
+  // The part of row y that does not depend on depth and column, columns counted from `first`.
+  ReprojectionRow row(int y, int first = 0) const;
 
  private:
   double matrix_[4][4];  // [row x, y, u, w][column x, y, u, 1], indices of pixels
@@ -35,5 +44,11 @@ class Reprojection {
 
 // The whole picture. `flow` is made anew where its size differs.
 void reproject(const Reprojection& reprojection, PlaneView<const float> depth, Flow& flow, Isa isa = best_isa());
+
+// The whole picture where things move: pixels of face id i go ways[way_of_id[i]], and ids beyond the end ways[0], of
+// which there is one at least. kNoWay: nowhere.
+constexpr uint32_t kNoWay = UINT32_MAX;
+void reproject(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, PlaneView<const float> depth,
+               PlaneView<const uint32_t> id, Flow& flow, Isa isa = best_isa());
 
 }  // namespace pac::sim

@@ -49,8 +49,16 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
     const AssistedScene seen{options.width, options.height, &renderer.low_scene(), split.low.samples};
     PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
   }
-  return Server(std::make_unique<State>(
-      State{std::move(scene), options, std::move(renderer), std::move(session), {}, std::move(video), false, {}}));
+  // A transmitted model travels where it is.
+  PacketWriter packets(options.transmit_model ? Transforms{} : transforms_of(renderer.low_scene()));
+  return Server(std::make_unique<State>(State{std::move(scene),
+                                              options,
+                                              std::move(renderer),
+                                              std::move(session),
+                                              {},
+                                              std::move(video),
+                                              false,
+                                              std::move(packets)}));
 }
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -68,6 +76,10 @@ const ServerFrame& Server::last_frame() const {
 
 const LeakyBucket* Server::bucket() const {
   return state_->options.video.rate.is_on() && state_->video ? &state_->video->bucket() : nullptr;
+}
+
+Result<void> Server::move_objects(std::span<const glm::mat4> transforms) {
+  return sim::move_objects(transforms, state_->scene.fine);
 }
 
 Result<Bytes> Server::frame(uint32_t frame_number, const raster::Camera& camera) {
@@ -111,7 +123,7 @@ Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& c
                               AssistedEncoder& video, bool key, uint64_t overhead_bytes) {
   CodedFrame out;
   const AssistedFrame frame{images.high.view(), images.low.view(), images.depth.view(), images.id.view(), camera,
-                            overhead_bytes};
+                            overhead_bytes,     images.objects};
   PAC_TRY(out.video, video.encode(frame, out.bytes, key));
   out.quality = out.video.quantizer_scale;
   out.composite = RgbImage(options.width, options.height);
@@ -129,6 +141,7 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   packet.codec = options.codec;
   packet.has_model = options.transmit_model;
   packet.camera = camera;
+  if (!options.transmit_model) packet.objects = images.objects;
   const bool is_key = state_->video && state_->video->next_is_key(state_->key_requested);
   const uint64_t overhead = state_->packets.overhead_bytes(packet, is_key);
   PAC_TRY(CodedFrame coded, state_->video ? code_video(images, camera, options, *state_->video, is_key, overhead)
@@ -152,6 +165,8 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   last.difference_bytes = coded.bytes.size();
   last.code = std::move(coded.bytes);
   last.packet_bytes = bytes.size();
+  const bool is_whole = bytes.size() >= kFramePacketOverhead + last.model_bytes + last.difference_bytes;
+  last.object_bytes = is_whole ? bytes.size() - kFramePacketOverhead - last.model_bytes - last.difference_bytes : 0;
   return bytes;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "base/file_io.h"
 #include "base/image.h"
@@ -38,7 +39,8 @@ struct ServerFrame {
   double quality = 0;    // coded quality of D; codec mpeg1: quantizer_scale
   AssistedReport video;  // codec mpeg1
   Bytes code;            // of the difference: JPEG, or the byte that says how it is predicted and MPEG-1
-  uint64_t model_bytes = 0, difference_bytes = 0, packet_bytes = 0;
+  // object_bytes: of a whole packet, what it says of moved objects (of a short one they are part of the packet).
+  uint64_t model_bytes = 0, difference_bytes = 0, object_bytes = 0, packet_bytes = 0;
 };
 
 // One object, one thread at a time; distinct objects are independent.
@@ -53,6 +55,10 @@ class Server {
 
   // The session message: sent once, before any frame. Holds the resident model, or only size and quality.
   const Bytes& session() const;
+
+  // World from object of each object of the fine model, from the next render() on; until the first call they are where
+  // the scene given to create() has them. Fails as sim::move_objects.
+  Result<void> move_objects(std::span<const glm::mat4> transforms);
 
   // Renders, subtracts, codes: one packet. `frame_number` is free. The same as render() and send() with
   // options.target_bytes.
