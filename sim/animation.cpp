@@ -36,6 +36,7 @@ bool same_picture(const RgbImage& a, const RgbImage& b) {
 // Motion JPEG: every frame a file of its own, D matched to the size of H's.
 Result<void> run_mjpeg(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
                        const AnimationSink& sink, Animation& out) {
+  PAC_CHECK(pose(options, 0, scene.fine));
   PAC_TRY(Server server, Server::create(std::move(scene), out.split, server_options_for(options, out)));
   PAC_TRY(Client client, Client::create(server.session(), client_options_for(options)));
   out.resident_model_bytes = options.render.transmit_model ? 0 : server.session().size();
@@ -43,6 +44,7 @@ Result<void> run_mjpeg(SceneSet scene, const CameraPath& path, const AnimationOp
   const float aspect = static_cast<float>(out.width) / static_cast<float>(out.height);
   for (int number = 0; number < options.frames; ++number) {
     const raster::Camera camera = path(number, aspect);
+    if (options.objects) PAC_CHECK(server.move_objects(options.objects(number)));
     PAC_TRY(FrameImages images, server.render(camera));
     PAC_TRY(const CodedImage coded,
             code_at_quality(images.high.view(), Content::image, options.quality, options.coding));
@@ -55,6 +57,10 @@ Result<void> run_mjpeg(SceneSet scene, const CameraPath& path, const AnimationOp
 }
 
 }  // namespace
+
+Result<void> pose(const AnimationOptions& options, int number, raster::Scene& fine) {
+  return options.objects ? move_objects(options.objects(number), fine) : Result<void>{};
+}
 
 ServerOptions server_options_for(const AnimationOptions& options, const Animation& out) {
   ServerOptions server;
@@ -85,7 +91,7 @@ Result<void> show_frame(int number, const AnimationOptions& options, const Anima
   const std::vector<FrameScores> scores = score_frames(pairs, options.render.threads);
   add_frame(out.image_based, image.code.size(), image.quality, scores[0]);
   const bool is_video = options.codec == VideoCodec::mpeg1;
-  const uint64_t charged = is_video ? packet.size() : sent.difference_bytes + sent.model_bytes;
+  const uint64_t charged = is_video ? packet.size() : sent.difference_bytes + sent.model_bytes + sent.object_bytes;
   add_frame(out.polygon_assisted, charged, sent.quality, scores[1]);
   out.packet_bytes += packet.size();
   if (!sink.frame) return {};

@@ -11,6 +11,7 @@
 #include "sim/assisted_video.h"
 #include "sim/experiment.h"
 #include "sim/match.h"
+#include "sim/object_motion.h"
 #include "sim/scenes.h"
 #include "sim/video_scores.h"
 
@@ -20,6 +21,10 @@ enum class VideoCodec : uint8_t { mjpeg, mpeg1 };
 
 // Frame number (from 0) and aspect (width / height) to camera.
 using CameraPath = std::function<raster::Camera(int frame, float aspect)>;
+
+// Frame number (from 0) to where the objects of SceneSet::fine are, in their order; as many as it has. Empty: they stay
+// where they are.
+using ObjectPath = std::function<Transforms(int frame)>;
 
 struct AnimationOptions {
   RenderOptions render;  // split, size, samples, threads, isa; transmit_model as for stills
@@ -37,11 +42,13 @@ struct AnimationOptions {
   double buffer_seconds = 1;   // of the bucket
   int frames_per_second = 20;  // 1..60: the next legal picture_rate that is not slower goes into the headers
   AssistedVideoOptions video;  // of the polygon-assisted arm; quantizer_scale, rate, picture_rate_code: set by the run
+  ObjectPath objects;          // frame 0 is where the session message has them
 };
 
 // One arm's frame.
 struct ArmFrame {
-  uint64_t bytes = 0;  // JPEG file, and the model where it is transmitted; MPEG picture; of assisted video the packet
+  // JPEG file, and what is transmitted of model and moved objects; MPEG picture; of assisted video the whole packet.
+  uint64_t bytes = 0;
   double quality = 0;  // coded quality; mpeg1: quantizer_scale
   FrameScores scores{};
 };
@@ -77,8 +84,8 @@ struct AnimationSink {
 };
 
 // Renders, codes both arms, sends the packets to a client, scores what both show. The client sees nothing but bytes;
-// corrupt where its picture is not the one that the server predicts. Fails as Server::create and Client::receive, and
-// with bad_argument.
+// corrupt where its picture is not the one that the server predicts. Fails as Server::create, Server::move_objects and
+// Client::receive, and with bad_argument.
 Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
                                 const AnimationSink& sink = {});
 

@@ -74,9 +74,11 @@ Result<void> run_mpeg1(SceneSet scene, const CameraPath& path, const AnimationOp
           FrameRenderer::create(scene, out.split, false, out.width, out.height, render.threads, render.isa));
   for (int number = 0; number < options.frames; ++number) {
     const raster::Camera camera = path(number, aspect);
+    PAC_CHECK(pose(options, number, scene.fine));
     PAC_TRY(FrameImages images, renderer.render(scene, camera, true));
     shots.push_back({camera, std::move(images)});
   }
+  PAC_CHECK(pose(options, 0, scene.fine));  // as the session message will have them
   VideoAnimation both(options, {out.width, out.height, &renderer.low_scene(), out.split.low.samples});
   PAC_CHECK(both.choose(shots));
   ServerOptions server_options = server_options_for(options, out);

@@ -7,6 +7,9 @@
 
 namespace pac::sim {
 
+// The objects of the fine model as the path has them in that frame.
+Result<void> pose(const AnimationOptions& options, int number, raster::Scene& fine);
+
 ServerOptions server_options_for(const AnimationOptions& options, const Animation& out);
 ClientOptions client_options_for(const AnimationOptions& options);
 

@@ -57,15 +57,17 @@ SceneSet build_cubes(uint32_t seed) {
     material.shininess = 24;
     material.two_sided = false;
   }
+  SceneSet set;
   add_cube(builder, {0, 0, 0}, CubeFrame(0.3, 0.35, 1.2f), materials[0]);
   constexpr int kSatellites = 6;
   for (int k = 0; k < kSatellites; ++k) {
     const double angle = 2.0 * kPi * k / kSatellites + 0.35;
     const glm::vec3 center(2.6f * static_cast<float>(exact_sin(angle)), (k & 1) != 0 ? 1.55f : -1.55f,
                            2.6f * static_cast<float>(exact_cos(angle)));
+    const size_t first = builder.scene().mesh.vertices.size();
     add_cube(builder, center, CubeFrame(0.7 * k + 0.2, 0.5 - 0.31 * k, 0.80f), materials[1 + k]);
+    set.parts.push_back(part_since(builder.scene(), first));
   }
-  SceneSet set;
   set.fine = builder.take();
   raster::Light sun, fill, back;
   sun.direction = glm::normalize(glm::vec3(0.45f, -0.75f, -0.55f));
@@ -79,6 +81,17 @@ SceneSet build_cubes(uint32_t seed) {
   set.fine.background = rgb8(30, 34, 46);
   set.default_split = "texture";
   return set;
+}
+
+// Every second satellite turns about itself and bobs, neighbors against each other; the others rest.
+Transforms cubes_motion(int frame, const std::vector<MovablePart>& parts) {
+  Transforms transforms(parts.size(), glm::mat4(1.0f));
+  const double phase = 2.0 * kPi * static_cast<double>(frame % 96) / 96.0;
+  for (size_t k = 0; k < parts.size(); k += 2) {
+    const double side = (k & 2) != 0 ? -1.0 : 1.0, shift[3] = {0, 0.35 * side * exact_sin(2.0 * phase), 0};
+    transforms[k] = turned_about_y(parts[k].pivot, side * phase, shift);
+  }
+  return transforms;
 }
 
 raster::Camera cubes_camera(int frame, float aspect) {

@@ -7,6 +7,7 @@ namespace pac::sim {
 
 SceneSet build_room(uint32_t seed);
 raster::Camera room_camera(int frame, float aspect);
+Transforms room_motion(int frame, const std::vector<MovablePart>& parts);
 SceneSet build_pin(uint32_t seed);
 raster::Camera pin_camera(int frame, float aspect);
 SceneSet build_letter(uint32_t seed);
@@ -14,6 +15,13 @@ SceneSet build_letter_texture(uint32_t seed);
 raster::Camera letter_camera(int frame, float aspect);
 SceneSet build_cubes(uint32_t seed);
 raster::Camera cubes_camera(int frame, float aspect);
+Transforms cubes_motion(int frame, const std::vector<MovablePart>& parts);
+
+// The vertices from `first_vertex` (there is one) to the last, about the middle of their bounding box.
+MovablePart part_since(const raster::Scene& scene, size_t first_vertex);
+
+// Turned about the vertical through `pivot` (from +z towards +x), then shifted.
+glm::mat4 turned_about_y(glm::vec3 pivot, double angle_rad, const double shift[3]);
 
 // A camera that circles `center`: at frame 0 at angle `start_rad` (0 = on +z, growing towards +x), one turn in
 // `frames_a_turn`.

@@ -50,7 +50,12 @@ std::vector<uint8_t> vertex_colors(const raster::Scene& scene, const std::vector
 
 }  // namespace
 
-size_t furnish_room(SceneBuilder& builder, const RoomMaterials& m, uint32_t seed) {
+size_t furnish_room(SceneBuilder& builder, const RoomMaterials& m, uint32_t seed, std::vector<MovablePart>* parts) {
+  const auto add_movable = [&](const auto& add) {
+    const size_t first = builder.scene().mesh.vertices.size();
+    add();
+    if (parts != nullptr) parts->push_back(part_since(builder.scene(), first));
+  };
   add_shell(builder, m);
   add_window(builder, m);
   add_fireplace(builder, m);
@@ -65,12 +70,12 @@ size_t furnish_room(SceneBuilder& builder, const RoomMaterials& m, uint32_t seed
   add_lamp(builder, m);
   place(builder, 1.85f, 0, 4.2f, 0.12);
   add_table(builder, m);
-  add_vase(builder, m, {-0.02f, 0.75f, -0.12f});
+  add_movable([&] { add_vase(builder, m, {-0.02f, 0.75f, -0.12f}); });
   add_fruit(builder, {0.28f, 0.79f, 0.05f}, 0.042f, m.apple);
   add_fruit(builder, {0.36f, 0.789f, 0.14f}, 0.040f, m.orange);
   add_book(builder, m, {0.08f, 0.75f, 0.10f}, {0.22f, 0.78f, 0.30f});
   place(builder, 2.85f, 0, 4.2f, -1.35);
-  add_chair(builder, m);
+  add_movable([&] { add_chair(builder, m); });
   place(builder, 1.6f, 0, 3.5f, 0.1);
   add_chair(builder, m);
   place(builder, 0, 0, 0);
@@ -84,9 +89,9 @@ size_t furnish_room(SceneBuilder& builder, const RoomMaterials& m, uint32_t seed
 SceneSet build_room(uint32_t seed) {
   SceneBuilder builder("room");
   const RoomMaterials materials = add_room_materials(builder, seed * 64u);
-  const size_t first_sunny = furnish_room(builder, materials, seed * 64u);
-
   SceneSet set;
+  const size_t first_sunny = furnish_room(builder, materials, seed * 64u, &set.parts);
+
   set.fine = builder.take();
   const Mesh& mesh = set.fine.mesh;
   std::vector<FaceOptics> optics;
@@ -102,6 +107,16 @@ SceneSet build_room(uint32_t seed) {
   set.fine.background = rgb8(20, 18, 18);
   set.default_split = "texture";
   return set;
+}
+
+// The vase turns; the chair is drawn back from the table, swivels and returns. Baked light moves with them, and their
+// shadows stay.
+Transforms room_motion(int frame, const std::vector<MovablePart>& parts) {
+  PAC_ASSERT(parts.size() == 2);
+  const double phase = 2.0 * kPi * static_cast<double>(frame % 80) / 80.0;
+  constexpr double kRests[3] = {0, 0, 0};
+  const double drawn[3] = {0.3 * (0.5 - 0.5 * exact_cos(phase)), 0, 0};
+  return {turned_about_y(parts[0].pivot, phase, kRests), turned_about_y(parts[1].pivot, 0.5 * exact_sin(phase), drawn)};
 }
 
 raster::Camera room_camera(int frame, float aspect) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sim/scene_builder.h"
+#include "sim/scenes.h"
 
 namespace pac::sim {
 
@@ -43,7 +44,9 @@ void add_painting(SceneBuilder& builder, const RoomMaterials& materials, uint32_
                   glm::vec3 right, glm::vec3 out, float width, float height);
 
 // All of the above in place: 1131 polygons, whatever the seed. Faces from the returned number on are in the sun.
-size_t furnish_room(SceneBuilder& builder, const RoomMaterials& materials, uint32_t seed);  // scene_room.cpp
+// scene_room.cpp. `parts`, where not null: what can move, the vase and the chair beside the table, are appended.
+size_t furnish_room(SceneBuilder& builder, const RoomMaterials& materials, uint32_t seed,
+                    std::vector<MovablePart>* parts = nullptr);
 
 // The way sunlight travels, x = 1: through the window, down, a little towards the camera.
 constexpr float kSunDown = 0.66f, kSunForward = 0.30f;

@@ -44,7 +44,8 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
                                                     const AssistedVideoOptions& options, Isa isa, bool keep_shown) {
   PAC_TRY(AssistedEncoder encoder, AssistedEncoder::create(scene, options, isa));
   std::vector<VideoFrame> frames;
-  PacketWriter packets;
+  PAC_ASSERT(!shots.empty());
+  PacketWriter packets(shots[0].images.objects);
   for (const Shot& shot : shots) {
     const FrameImages& images = shot.images;
     VideoFrame coded;
@@ -52,9 +53,10 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
     packet.frame = static_cast<uint32_t>(frames.size());
     packet.codec = Codec::mpeg1;
     packet.camera = shot.camera;
+    packet.objects = images.objects;
     const uint64_t overhead = packets.overhead_bytes(packet, encoder.next_is_key());
     PAC_TRY(const AssistedReport report, encoder.encode({images.high.view(), images.low.view(), images.depth.view(),
-                                                         images.id.view(), shot.camera, overhead},
+                                                         images.id.view(), shot.camera, overhead, images.objects},
                                                         coded.code));
     coded.quantizer_scale = report.quantizer_scale;
     packet.difference = coded.code;

@@ -40,7 +40,7 @@ struct ImageVideoOptions {
 Result<std::vector<VideoFrame>> code_image_video(const std::vector<Shot>& shots, const ImageVideoOptions& options,
                                                  bool keep_shown);
 
-// The polygon-assisted arm as the server codes it.
+// The polygon-assisted arm as the server codes it, where the session message has objects as the first shot does.
 Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& shots, const AssistedScene& scene,
                                                     const AssistedVideoOptions& options, Isa isa, bool keep_shown);
 

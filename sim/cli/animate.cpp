@@ -15,6 +15,7 @@ namespace {
 struct Request {
   std::string scene, out;
   int first = 0, bit_rate_bps = 0;
+  bool moving = false;
   sim::AnimationOptions animation;
 };
 
@@ -55,6 +56,8 @@ void declare(Options& options, Request& request) {
   options.integer("--frames", "N", request.animation.frames, 1, 100000, "of the camera path (48)");
   options.integer("--first", "N", request.first, 0, 1000000, "frame of the path to start with (0)");
   options.integer("--fps", "F", request.animation.frames_per_second, 1, 60, "frames a second (20, as Table I)");
+  options.choice<bool>("--objects", request.moving, {{"still", false}, {"moving", true}},
+                       "moving: things move, too (a glTF file's animation: moving; room, cubes: still)");
   options.text("--split", "NAMES", render.split,
                "texture, tessellation, shading, antialiasing, lighting, or several joined by commas (the scene's own)");
   options.choice<VideoCodec>("--codec", request.animation.codec,
@@ -150,6 +153,7 @@ int print_as_json(const Request& request, const sim::Animation& animation) {
   json.field("height", animation.height);
   json.field("frames", request.animation.frames);
   json.field("frames_per_second", request.animation.frames_per_second);
+  json.field("objects", request.moving ? "moving" : "still");
   json.field("resident_model_bytes", animation.resident_model_bytes);
   json.field("packet_bytes", animation.packet_bytes);
   if (animation.bucket_bytes > 0) {
@@ -220,6 +224,10 @@ int run_animate(Args args) {
   if (options.given("--bit-rate") && !options.given("--gop")) animation.video.key_interval = 0;
   if (animation.video.prediction == sim::Prediction::block && !options.given("--difference"))
     animation.video.difference = sim::Difference::halved;
+  if (request.moving && !source->can_move())
+    return options.usage_error("--objects moving: nothing in this scene can move");
+  if (!options.given("--objects")) request.moving = source->builtin == nullptr && source->can_move();
+  if (request.moving && source->builtin != nullptr) sim::move_parts(source->set);
   if (animation.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
     sim::add_coarse_model(source->set);
   animation.render.threads = animation.coding.threads = options.threads;
@@ -234,10 +242,18 @@ int run_animate(Args args) {
     files.add_frame(frame);
     progress.show(static_cast<double>(frame.number + 1) / animation.frames, "frames");
   };
-  // The animation takes the scene over; a copy of its mesh stays behind, which the path of a loaded model frames.
+  // The animation takes the scene over; a copy of its mesh stays behind, which the path of a loaded model frames, and
+  // what moves its objects.
   SceneSource framed;
   framed.builtin = source->builtin;
+  framed.animation = source->animation;
+  framed.set.parts = source->set.parts;
   framed.set.fine.mesh = source->set.fine.mesh;
+  framed.set.fine.objects = source->set.fine.objects;
+  if (request.moving)
+    animation.objects = [&](int frame) {
+      return framed.transforms(request.first + frame, animation.frames_per_second);
+    };
   const auto path = [&](int frame, float aspect) { return framed.camera(request.first + frame, aspect); };
   const auto result = sim::run_animation(std::move(source->set), path, animation, sink);
   if (!result.ok()) return data_error(request.scene, result.failure());

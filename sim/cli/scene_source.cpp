@@ -53,6 +53,16 @@ void SceneSource::pose(int frame, int frames_per_second) {
   raster::pose_objects(animation, frame * step, (frame - 1) * step, set.fine);
 }
 
+bool SceneSource::can_move() const {
+  return builtin != nullptr ? builtin->part_motion != nullptr : !animation.empty();
+}
+
+sim::Transforms SceneSource::transforms(int frame, int frames_per_second) {
+  if (builtin != nullptr) return builtin->part_motion(frame, set.parts);
+  pose(frame, frames_per_second);
+  return sim::transforms_of(set.fine);
+}
+
 std::optional<SceneSource> load_scene(const std::string& name, const Options& options) {
   SceneSource source;
   source.name = name;

@@ -22,6 +22,11 @@ struct SceneSource {
   // Moves the objects of set.fine to where they are at frame / frames_per_second, their previous transforms to one
   // frame before.
   void pose(int frame, int frames_per_second);
+
+  // Parts of a built-in scene or nodes of a glTF file can move.
+  bool can_move() const;
+  // Where the objects are in that frame, once move_parts() made objects of a built-in scene's parts.
+  sim::Transforms transforms(int frame, int frames_per_second);
 };
 
 constexpr int kStillFramesPerSecond = 20;  // of --frame, as Table I
