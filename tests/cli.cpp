@@ -362,6 +362,36 @@ TEST_CASE("animate shows a model of one's own in every frame, and from another s
   CHECK(first != second);
 }
 
+TEST_CASE("animate moves what can move: a glTF file's nodes unasked, parts of the cubes when asked") {
+  const CliFolder folder;
+  // A triangle that slides to the right for two seconds, and one that stands: key times 0 and 2, places, corners.
+  folder.write(
+      "m.gltf",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},)"
+      R"({"bufferView":1,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[2]},)"
+      R"({"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"}],)"
+      R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":8},)"
+      R"({"buffer":0,"byteOffset":44,"byteLength":24}],)"
+      R"("buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)"
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAEBAAAAAAAAAAAA="
+      R"("}],"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],)"
+      R"("samplers":[{"input":1,"output":2}]}]})");
+  const std::string small = " --codec mpeg1 --frames 2 --fps 1 --width 64 --height 64 --samples 1 --json ";
+  const CliRun run = folder.pac("animate m.gltf" + small + "-o moving");
+  if (run.code != 0 && contains(run.err, "built without glTF")) return;
+  CHECK(json(run).at("objects") == "moving");
+  CHECK(json(folder.pac("animate m.gltf --objects still" + small + "-o still")).at("objects") == "still");
+  CHECK(folder.read("moving/H.y4m") != folder.read("still/H.y4m"));
+  CHECK(folder.read("moving/H.y4m").substr(0, 64 * 64) == folder.read("still/H.y4m").substr(0, 64 * 64));
+
+  CHECK(json(folder.pac("animate cubes" + small + "-o cubes")).at("objects") == "still");
+  CHECK(json(folder.pac("animate cubes --objects moving" + small + "-o bobbing")).at("objects") == "moving");
+  CHECK(folder.read("cubes/H.y4m") != folder.read("bobbing/H.y4m"));
+  check_usage_error(folder.pac("animate letter --objects moving --frames 1"), "nothing in this scene can move");
+}
+
 TEST_CASE("compare matches both arms' bytes and writes a page of its own") {
   const CliFolder folder;
   const std::string compare = "compare letter-texture --width 96 --height 96 --samples 1 --json ";

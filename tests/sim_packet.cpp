@@ -190,7 +190,9 @@ TEST_CASE("each rejected field has its own error, although the checksum is right
   CHECK(std::string(frame_failure(patched(packet, 0, {'X'})).text) == "not a message of this kind");
   CHECK(frame_failure(patched(packet, 4, {9})).error == Error::unsupported);
   CHECK(std::string(frame_failure(patched(packet, 6, {3})).text) == "unknown codec");
-  CHECK(std::string(frame_failure(patched(packet, 7, {2})).text) == "unknown flag");
+  CHECK(std::string(frame_failure(patched(packet, 7, {4})).text) == "unknown flag");
+  CHECK(std::string(frame_failure(patched(packet, 7, {2})).text) ==
+        "packet moves objects that the model does not have");
   CHECK(std::string(frame_failure(patched(packet, 12, {0, 0, 0xC0, 0x7F})).text) == "camera is not finite");
   CHECK(std::string(frame_failure(patched(packet, 84, {0, 0, 0x80, 0xFF})).text) == "camera is not finite");
   CHECK(std::string(frame_failure(patched(packet, 104, {1})).text) == "packet is shorter than its parts");
