@@ -1,5 +1,5 @@
-// The transforms of moved objects, bit for bit against earlier ones: 1 bit where nothing moved, about 12 bytes for an
-// object that was shifted, 25 for one that turned as well. Of a rotation (with any scale) three numbers are coded as
+// The transforms of moved objects, bit for bit against earlier ones: 1 bit where nothing moved, about 11 bytes for an
+// object that was shifted, 16 to 22 for one that turned as well. Of a rotation (with any scale) three numbers are coded as
 // they changed; the other six are predicted from them and corrected in the last place.
 #pragma once
 
