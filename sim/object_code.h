@@ -1,6 +1,6 @@
 // The transforms of moved objects, bit for bit against earlier ones: 1 bit where nothing moved, about 11 bytes for an
-// object that was shifted, 16 to 22 for one that turned as well. Of a rotation (with any scale) three numbers are coded as
-// they changed; the other six are predicted from them and corrected in the last place.
+// object that was shifted, 16 to 22 for one that turned as well. Of a rotation (with any scale) three numbers are coded
+// as they changed; the other six are predicted from them and corrected in the last place.
 #pragma once
 
 #include <span>
