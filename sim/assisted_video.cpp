@@ -9,6 +9,7 @@
 #include "sim/difference.h"
 #include "sim/frame420.h"
 #include "sim/model_prediction.h"
+#include "sim/model_vectors.h"
 #include "sim/object_motion.h"
 #include "sim/signed_composite.h"
 
@@ -133,6 +134,12 @@ class SharedState {
   ModelPredictor predictor_;
 };
 
+std::optional<ModelFlow> block_flow_for(const AssistedScene& scene, const AssistedVideoOptions& options, Isa isa) {
+  if (options.prediction != Prediction::block) return std::nullopt;
+  const raster::SampleOffset sample = raster::sample_pattern(scene.samples)[0];
+  return ModelFlow(scene.width, scene.height, sample.x / 256.0, sample.y / 256.0, movers_of(*scene.low), isa);
+}
+
 Result<void> check(const AssistedScene& scene) {
   if (scene.width < 1 || scene.width > mpeg1::kMaxWidth || scene.height < 1 || scene.height > mpeg1::kMaxHeight)
     return Failure{Error::bad_argument, 0, "pictures of MPEG-1 are at most 4095 x 2800 pixels"};
@@ -158,7 +165,8 @@ struct AssistedEncoder::State {
   Frame420 source;
   RgbImage difference;
   LeakyBucket bucket;
-  double last_quantizer = 0;  // of a picture between two that stand alone; 0: none yet
+  double last_quantizer = 0;            // of a picture between two that stand alone; 0: none yet
+  std::optional<ModelFlow> block_flow;  // of block prediction: where the search for vectors begins
 
   // Where the search of a bit rate begins.
   double first_guess(bool is_key) const {
@@ -176,7 +184,7 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
   return AssistedEncoder(std::make_unique<State>(
       State{options, isa, SharedState(scene, isa), std::move(encoder), -1, Frame420(scene.width, scene.height),
-            RgbImage(scene.width, scene.height), LeakyBucket(options.rate), 0}));
+            RgbImage(scene.width, scene.height), LeakyBucket(options.rate), 0, block_flow_for(scene, options, isa)}));
 }
 
 AssistedEncoder::AssistedEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -218,6 +226,16 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
     picture.quantizer_scale = s.first_guess(is_key);
     picture.code_again = QuantizerSearch::code_again;
     picture.code_again_context = &search;
+  }
+
+  std::vector<mpeg1::MotionVector> vectors;
+  if (s.block_flow) {
+    if (!is_key) {
+      vectors = vectors_of(s.block_flow->find(frame.depth, frame.id, frame.camera, frame.objects));
+      picture.candidates = vectors;
+      picture.candidates_per_macroblock = kModelVectors;
+    }
+    s.block_flow->remember(frame.camera, frame.objects);
   }
 
   const size_t before = out.size();

@@ -2,7 +2,9 @@
 // state and run the same code on it: there is no drift.
 //
 //   prediction none    every picture stands alone
-//              block   MPEG-1's own: blocks of the picture before, moved [Levoy95 s.3]
+//              block   MPEG-1's own: blocks of the picture before, moved [Levoy95 s.3]; where to, the search begins
+//              with
+//                      what the model knows (sim/model_vectors.h)
 //              model   the decoded difference carried by the model (sim/model_prediction.h)
 //   difference halved  D = 127 + (H-L)/2 in RGB, as the paper; a stock decoder shows it as a picture
 //              full    P pictures that predict H itself from L (+ carried difference): nothing is divided by two, and

@@ -104,10 +104,8 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
     : width_(width),
       height_(height),
       surfaces_(std::move(surfaces)),
-      movers_(std::move(movers)),
-      sample_x_(sample_x),
-      sample_y_(sample_y),
       isa_(isa),
+      flow_(width, height, sample_x, sample_y, std::move(movers), isa),
       reference_(width, height) {
   const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
   for (SurfaceMap* map : {now_, before_}) {
@@ -139,28 +137,9 @@ void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const 
   }
 }
 
-// One way through the two cameras for what stands, one more for each object that moved since.
-void ModelPredictor::find_flow(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
-                               std::span<const glm::mat4> objects) {
-  std::vector<Reprojection> ways = {Reprojection(camera, camera_, width_, height_, sample_x_, sample_y_)};
-  std::vector<uint32_t> way_of_mover(objects.size() + 1, 0);
-  const size_t n_known = movers_.empty() ? 0 : std::min(objects.size(), objects_.size());
-  for (size_t i = 0; i < n_known; ++i) {
-    if (same_transform(objects[i], objects_[i])) continue;
-    way_of_mover[i + 1] = static_cast<uint32_t>(ways.size());
-    ways.emplace_back(MovedView{camera, objects[i]}, MovedView{camera_, objects_[i]}, width_, height_, sample_x_,
-                      sample_y_);
-  }
-  if (ways.size() == 1) return reproject(ways[0], depth, flow_, isa_);
-  std::vector<uint32_t> way_of_id(movers_.size(), 0);
-  for (size_t i = 0; i < movers_.size(); ++i)
-    way_of_id[i] = movers_[i] < way_of_mover.size() ? way_of_mover[movers_[i]] : kNoWay;
-  reproject(ways, way_of_id, depth, id, flow_, isa_);
-}
-
-void ModelPredictor::carry(bool chroma, const Frame420& base) {
+void ModelPredictor::carry(bool chroma, const Flow& flow, const Frame420& base) {
   const size_t level = chroma ? 1 : 0;
-  RowCarrier carrier(now_[level], before_[level], flow_, chroma, *kernels_for(isa_));
+  RowCarrier carrier(now_[level], before_[level], flow, chroma, *kernels_for(isa_));
   const int width = kept_[level].width(), height = kept_[level].height();
   std::vector<int16_t> carried(static_cast<size_t>(width));
   uint64_t found = 0;
@@ -186,9 +165,9 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
   map_surfaces(depth, id, now_[0], now_[1]);
   stats_ = {};
   if (has_kept_) {
-    find_flow(depth, id, camera, objects);
-    carry(false, base);
-    carry(true, base);
+    const Flow& flow = flow_.find(depth, id, camera, objects);
+    carry(false, flow, base);
+    carry(true, flow, base);
   } else {
     for (int component = 0; component < 3; ++component) {
       const PlaneView<const uint8_t> from = plane(base, component);
@@ -196,8 +175,7 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
       for (int y = 0; y < from.height; ++y) std::memcpy(target.row(y), from.row(y), static_cast<size_t>(from.width));
     }
   }
-  camera_ = camera;
-  objects_.assign(objects.begin(), objects.end());
+  flow_.remember(camera, objects);
   return reference_;
 }
 

@@ -15,8 +15,7 @@
 #include "base/image.h"
 #include "base/isa.h"
 #include "raster/scene.h"
-#include "sim/object_motion.h"
-#include "sim/reprojection.h"
+#include "sim/model_flow.h"
 
 namespace pac::sim {
 
@@ -78,18 +77,13 @@ class ModelPredictor {
 
  private:
   void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma, SurfaceMap& chroma);
-  void find_flow(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
-                 std::span<const glm::mat4> objects);
-  void carry(bool chroma, const Frame420& base);
+  void carry(bool chroma, const Flow& flow, const Frame420& base);
 
   int width_, height_;
-  std::vector<uint32_t> surfaces_, movers_;
-  double sample_x_, sample_y_;
+  std::vector<uint32_t> surfaces_;
   Isa isa_;
   bool has_kept_ = false;
-  raster::Camera camera_;  // of the frame whose reference was asked for last
-  Transforms objects_;
-  Flow flow_;
+  ModelFlow flow_;                 // to the frame whose reference was asked for last
   SurfaceMap now_[2], before_[2];  // luma, chroma
   BorderedPlane kept_[3];
   Frame420 reference_;
