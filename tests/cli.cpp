@@ -375,7 +375,7 @@ TEST_CASE("animate moves what can move: a glTF file's nodes unasked, parts of th
       R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":8},)"
       R"({"buffer":0,"byteOffset":44,"byteLength":24}],)"
       R"("buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)"
-      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAEBAAAAAAAAAAAA="
+      "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAA="
       R"("}],"animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],)"
       R"("samplers":[{"input":1,"output":2}]}]})");
   const std::string small = " --codec mpeg1 --frames 2 --fps 1 --width 64 --height 64 --samples 1 --json ";
