@@ -156,7 +156,8 @@ class Walk {
   uint32_t code_size(uint32_t context);
   uint32_t code_size_across(uint32_t gate_size);
   bool code_corner(uint32_t k, Place place);
-  Step code_step(Place place, const std::array<uint32_t, kOld>& candidate, uint32_t wanted);
+  Step code_step(Place place, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
+  uint32_t candidate_at(uint32_t step, const std::array<uint32_t, kOld>& candidate);
   uint32_t code_old_vertex(uint32_t wanted);
   void finish_face(uint32_t gate);
 
@@ -244,10 +245,19 @@ bool Walk<Coder>::code_face(uint32_t gate) {
   return true;
 }
 
-// Which of the ways to name a corner applies; `candidate` holds the vertices that kBefore .. kBeforeBefore stand for
-// (kNone: not available), `wanted` (encoder) the vertex or kNone for a new one.
+// What kAfterAfter and kBeforeBefore stand for. Looked up when asked for: few corners come so far.
 template <class Coder>
-Step Walk<Coder>::code_step(Place place, const std::array<uint32_t, kOld>& candidate, uint32_t wanted) {
+uint32_t Walk<Coder>::candidate_at(uint32_t step, const std::array<uint32_t, kOld>& candidate) {
+  if (step == kAfterAfter) return candidate[kAfter] == kNone ? kNone : open_.after(candidate[kAfter]);
+  if (step == kBeforeBefore) return candidate[kBefore] == kNone ? kNone : open_.before(candidate[kBefore]);
+  return candidate[step];
+}
+
+// Which of the ways to name a corner applies; `candidate` holds the vertices that kBefore and kAfter stand for (kNone:
+// not available) and receives the others as far as they are asked for, `wanted` (encoder) is the vertex or kNone for a
+// new one.
+template <class Coder>
+Step Walk<Coder>::code_step(Place place, std::array<uint32_t, kOld>& candidate, uint32_t wanted) {
   const uint32_t before = candidate[kBefore], after = candidate[kAfter];
   const uint32_t available = (before != kNone ? 1u : 0u) | (after != kNone ? 2u : 0u) | (before == after ? 4u : 0u);
   const uint32_t left = corners_.empty() ? 0 : degree(corners_.back());
@@ -258,6 +268,7 @@ Step Walk<Coder>::code_step(Place place, const std::array<uint32_t, kOld>& candi
   if (!may_be_old) return kNew;
   if (may_be_new && coder_.bit(one[kNew], two[kNew], wanted == kNone ? 1 : 0) != 0) return kNew;
   for (uint32_t step = kBefore; step < kOld; ++step) {
+    candidate[step] = candidate_at(step, candidate);
     if (candidate[step] == kNone) continue;
     if (std::find(&candidate[kBefore], &candidate[step], candidate[step]) != &candidate[step])
       continue;  // asked already
@@ -283,8 +294,6 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
   if (!corners_.empty()) {
     candidate[kBefore] = open_.before(corners_.back());
     candidate[kAfter] = open_.after(corners_.front());
-    if (candidate[kAfter] != kNone) candidate[kAfterAfter] = open_.after(candidate[kAfter]);
-    if (candidate[kBefore] != kNone) candidate[kBeforeBefore] = open_.before(candidate[kBefore]);
   }
   uint32_t wanted = kNone, mesh_vertex = kNone;
   if constexpr (!Coder::kDecodes) {
@@ -316,11 +325,9 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
 template <class Coder>
 void Walk<Coder>::finish_face(uint32_t gate) {
   const uint32_t first = topology_.n_corners(), face = topology_.n_faces();
-  for (const uint32_t vertex : corners_) {
-    topology_.corner_vertex.push_back(vertex);
-    topology_.corner_face.push_back(face);
-    topology_.twin.push_back(kOpen);
-  }
+  topology_.corner_vertex.insert(topology_.corner_vertex.end(), corners_.begin(), corners_.end());
+  topology_.corner_face.insert(topology_.corner_face.end(), corners_.size(), face);
+  topology_.twin.insert(topology_.twin.end(), corners_.size(), kOpen);
   topology_.face_first.push_back(topology_.n_corners());
   if (gate != kNone) open_.pair(gate, first);
   for (uint32_t corner = first; corner < topology_.n_corners(); ++corner) {

@@ -28,9 +28,9 @@ std::vector<uint8_t> RangeEncoder::finish() {
   return std::exchange(bytes_, {});
 }
 
-uint32_t RangeDecoder::read_word() {
+uint32_t RangeDecoder::last_word(const uint8_t* data, uint64_t size, uint64_t at) {
   uint32_t word = 0;
-  for (int i = 0; i < 4; ++i, ++position_) word = word << 8 | (position_ < bytes_.size() ? bytes_[position_] : 0u);
+  for (uint64_t i = at; i < at + 4; ++i) word = word << 8 | (i < size ? data[i] : 0u);
   return word;
 }
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct AdaptiveBit {
   static constexpr int kSlowest = 24;      // measured: 16 suits meshes below 1,000 faces, 60 those above 50,000
   static constexpr int kCertain = 32;      // probabilities stay in [kCertain, 65536 - kCertain] / 65536
   uint16_t probability_of_one = 1u << 15;  // / 65536
-  uint8_t step_index = 0;
+  uint16_t step_index = 0;  // not a byte: stores through bytes may alias anything, the coder's state included
 
   void update(uint32_t bit);
 };
@@ -37,7 +38,7 @@ inline void AdaptiveBit::update(uint32_t bit) {
   // |target - p| < 2^16 and the step is below 2^16: the product needs 33 bits. >> rounds towards minus infinity.
   const int64_t change = (int64_t{target} - probability_of_one) * kStep[step_index] >> 16;
   probability_of_one = static_cast<uint16_t>(probability_of_one + change);
-  if (step_index + 1 < kSlowest) ++step_index;
+  step_index = static_cast<uint16_t>(step_index + (step_index + 1 < kSlowest ? 1 : 0));
 }
 
 // The probability of 1 where two contexts predict the same bit: their mean, each weighted by its certainty, that is by
@@ -122,9 +123,9 @@ class RangeDecoder {
  public:
   static constexpr bool kDecodes = true;
 
-  explicit RangeDecoder(std::span<const uint8_t> bytes) : bytes_(bytes) {
-    code_ = uint64_t{read_word()} << 32;
-    code_ |= read_word();
+  explicit RangeDecoder(std::span<const uint8_t> bytes) : data_(bytes.data()), size_(bytes.size()) {
+    code_ = uint64_t{next_word()} << 32;
+    code_ |= next_word();
   }
   uint32_t bit(AdaptiveBit& model, uint32_t /*unused*/ = 0) {
     const uint32_t bit = narrow(model.probability_of_one);
@@ -158,9 +159,9 @@ class RangeDecoder {
     normalize();
   }
   // More than the 8 bytes that an encoder may leave out were read past the end.
-  bool failed() const { return position_ > bytes_.size() + 8; }
+  bool failed() const { return position_ > size_ + 8; }
   // Everything was read and nothing else: what finish() wrote, to the byte.
-  bool ends_exactly() const { return !failed() && position_ >= bytes_.size(); }
+  bool ends_exactly() const { return !failed() && position_ >= size_; }
 
  private:
   uint32_t narrow(uint32_t probability_of_one) {
@@ -178,13 +179,31 @@ class RangeDecoder {
   void normalize() {
     if (range_ >> 32 != 0) return;
     range_ <<= 32;
-    code_ = code_ << 32 | read_word();
+    code_ = code_ << 32 | next_word();
   }
-  uint32_t read_word();
+  uint32_t next_word() {
+    const uint64_t at = position_;
+    position_ += 4;
+    if (size_ < 4 || at > size_ - 4) return last_word(data_, size_, at);
+    const uint8_t* bytes = data_ + at;
+    return uint32_t{bytes[0]} << 24 | uint32_t{bytes[1]} << 16 | uint32_t{bytes[2]} << 8 | bytes[3];
+  }
+  // The word at `at`, zeros past the end. By value, so that a decoder's own state need not be in memory.
+  static uint32_t last_word(const uint8_t* data, uint64_t size, uint64_t at);
 
-  std::span<const uint8_t> bytes_;
+  const uint8_t* data_;
+  uint64_t size_;
   uint64_t position_ = 0;  // bytes delivered, those past the end included
   uint64_t code_ = 0, range_ = ~uint64_t{0};
 };
+
+// What a loop codes with: a decoder as a copy of its own, which compilers keep in registers, an encoder in place.
+//   HeldCoder<Coder> held = coder; ... release(coder, held);
+template <class Coder>
+using HeldCoder = std::conditional_t<Coder::kDecodes, Coder, Coder&>;
+inline void release(RangeDecoder& coder, const RangeDecoder& held) {
+  coder = held;
+}
+inline void release(RangeEncoder& /*coder*/, const RangeEncoder& /*held*/) {}
 
 }  // namespace pac::geomcodec

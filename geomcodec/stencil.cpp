@@ -11,17 +11,60 @@ Stencils::Stencils(const Topology& topology) : topology_(topology), first_(size_
     around_[end[topology.corner_vertex[corner]]++] = corner;
 }
 
-void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
+namespace {
+
+// Corners of a mesh of triangles only: face f has corners 3f .. 3f + 2.
+struct TriangleCorners {
+  uint32_t next, previous;
+  explicit TriangleCorners(uint32_t corner) {
+    const uint32_t place = corner % 3;
+    next = place == 2 ? corner - 2 : corner + 1;
+    previous = place == 0 ? corner + 2 : corner - 1;
+  }
+};
+
+}  // namespace
+
+// add_corner() where every face is a triangle.
+inline void Stencils::add_triangle(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {
+  const uint32_t* corner_vertex = topology_.corner_vertex.data();
+  const uint32_t* twin = topology_.twin.data();
+  const TriangleCorners here(corner);
+  const uint32_t a = corner_vertex[here.next], b = corner_vertex[here.previous];
+  if (a < vertex) stencil.add_neighbor(a);
+  if (b < vertex) stencil.add_neighbor(b);
+  if (a >= vertex || b >= vertex) return;
+  const uint32_t across = twin[here.next];
+  if (across == kNone) return;
+  const TriangleCorners there(across);
+  const uint32_t opposite = corner_vertex[there.previous];
+  if (opposite >= vertex) return;
+  stencil.add(a, b, opposite);
+  if (!with_twists) return;
+  const uint32_t left = twin[there.next], right = twin[there.previous];
+  if (left == kNone || right == kNone) return;
+  const uint32_t left_tip = corner_vertex[TriangleCorners(left).previous];
+  const uint32_t right_tip = corner_vertex[TriangleCorners(right).previous];
+  if (left_tip < vertex && right_tip < vertex) stencil.add_twist(left_tip, right_tip, opposite, opposite);
+}
+
+template <bool kTriangles>
+void Stencils::collect(uint32_t vertex, bool with_twists, Stencil& stencil) const {
   stencil.clear();
   if (vertex >= topology_.n_vertices) return;
   const uint32_t begin = first_[vertex], end = first_[vertex + 1];
   stencil.n_corners = static_cast<int>(end - begin < Stencil::kMax ? end - begin : Stencil::kMax);
   for (uint32_t i = begin; i < end && stencil.n_neighbors < Stencil::kMax; ++i)
-    add_corner(vertex, around_[i], with_twists, stencil);
+    if constexpr (kTriangles)
+      add_triangle(vertex, around_[i], with_twists, stencil);
+    else
+      add_corner(vertex, around_[i], with_twists, stencil);
   if (stencil.n_parallelograms > 0) return;
   for (uint32_t i = begin; i < end && i < begin + Stencil::kMax; ++i) add_extension(vertex, around_[i], stencil);
   stencil.extended = stencil.n_parallelograms > 0;
 }
+template void Stencils::collect<true>(uint32_t vertex, bool with_twists, Stencil& stencil) const;
+template void Stencils::collect<false>(uint32_t vertex, bool with_twists, Stencil& stencil) const;
 
 // What the face of one corner at `vertex` offers.
 void Stencils::add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {

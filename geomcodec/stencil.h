@@ -49,12 +49,20 @@ class Stencils {
  public:
   explicit Stencils(const Topology& topology);
   // Empty for vertices that no face uses; twists only if wanted.
-  void get(uint32_t vertex, bool with_twists, Stencil& stencil) const;
+  void get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
+    if (topology_.all_triangles)
+      collect<true>(vertex, with_twists, stencil);
+    else
+      collect<false>(vertex, with_twists, stencil);
+  }
   // Corners at `vertex`, in their order.
   const uint32_t* begin(uint32_t vertex) const { return around_.data() + first_[vertex]; }
   const uint32_t* end(uint32_t vertex) const { return around_.data() + first_[vertex + 1]; }
 
  private:
+  template <bool kTriangles>
+  void collect(uint32_t vertex, bool with_twists, Stencil& stencil) const;
+  void add_triangle(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const;
   void add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const;
   void add_extension(uint32_t vertex, uint32_t corner, Stencil& stencil) const;
   uint32_t tip_across(uint32_t vertex, uint32_t edge) const;

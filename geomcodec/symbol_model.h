@@ -20,11 +20,11 @@ struct SymbolModel {
   static constexpr int kFloor = 2;
   // The slowest steps: of the first and of the second of two models that predict a symbol, of one that does so alone.
   // One slow and one fast model did better than any one speed (measured on the meshes of bench/peers/geom_peers).
-  static constexpr uint8_t kSlow = 128, kFast = 18, kAlone = 64;
+  static constexpr int16_t kSlow = 128, kFast = 18, kAlone = 64;
   static constexpr int kTrusted = 31;  // counts of symbols seen, as weights use them
 
   int16_t start[kSymbols];  // of kTotal: probability of a lower symbol
-  uint8_t seen;             // symbols, at most the slowest step's
+  int16_t seen;             // symbols, at most the slowest step's; not a byte, as in AdaptiveBit
 
   // Equal probabilities for the lowest n_used symbols; the others have kFloor.
   explicit constexpr SymbolModel(int n_used) : start{}, seen(0) {
@@ -33,7 +33,7 @@ struct SymbolModel {
       start[i] = static_cast<int16_t>(kFloor * i + spare * std::min(i, n_used) / n_used);
   }
   constexpr SymbolModel();
-  void update(uint32_t symbol, uint8_t slowest);
+  void update(uint32_t symbol, int16_t slowest);
 };
 
 inline constexpr SymbolModel kEqualSymbols(SymbolModel::kSymbols);
@@ -59,51 +59,67 @@ inline constexpr auto kSymbolStep = [] {
   return step;
 }();
 
-inline void SymbolModel::update(uint32_t symbol, uint8_t slowest) {
-  const int32_t step = kSymbolStep[seen];
+inline void SymbolModel::update(uint32_t symbol, int16_t slowest) {
+  const int16_t step = kSymbolStep[static_cast<size_t>(seen)];
   const int16_t* target = kTargetStart[symbol].data();
   for (int i = 0; i < kSymbols; ++i) {
     const auto distance = static_cast<int16_t>(target[i] - start[i]);  // within +-32767
     start[i] = static_cast<int16_t>(start[i] + (distance * step >> 16));
   }
-  seen = static_cast<uint8_t>(seen + (seen < slowest ? 1 : 0));
+  seen = static_cast<int16_t>(seen + (seen < slowest ? 1 : 0));
 }
 
-// Two models of the same symbol, weighted by how many symbols each has seen: weights add up to 32, each at least 1.
-struct MixedStarts {
-  const SymbolModel& one;
-  const SymbolModel& two;
-  int32_t weight_one, weight_two;
+// Where each symbol starts, of 2^20, with the end: of one model, or of two that are weighted by how many symbols each
+// has seen (weights add up to 32, each at least 1). All sixteen at once: a few vector instructions, which do not wait
+// for the coder's division.
+struct Starts {
+  alignas(16) int32_t at[SymbolModel::kSymbols + 1];
 
-  MixedStarts(const SymbolModel& first, const SymbolModel& second) : one(first), two(second) {
-    const int32_t a = std::min<int32_t>(first.seen, SymbolModel::kTrusted) + 1;
-    const int32_t b = std::min<int32_t>(second.seen, SymbolModel::kTrusted) + 1;
-    weight_one = std::clamp((32 * a + (a + b) / 2) / (a + b), 1, 31);
-    weight_two = 32 - weight_one;
+  explicit Starts(const SymbolModel& model) {
+    for (int i = 0; i < SymbolModel::kSymbols; ++i) at[i] = model.start[i] * 32;
+    at[SymbolModel::kSymbols] = 1 << kSymbolBits;
   }
-  uint32_t at(uint32_t symbol) const {  // of 2^20; symbol 16: the end
-    if (symbol == SymbolModel::kSymbols) return 1u << kSymbolBits;
-    return static_cast<uint32_t>(one.start[symbol] * weight_one + two.start[symbol] * weight_two);
+  Starts(const SymbolModel& one, const SymbolModel& two) {
+    const int32_t a = std::min<int32_t>(one.seen, SymbolModel::kTrusted) + 1;
+    const int32_t b = std::min<int32_t>(two.seen, SymbolModel::kTrusted) + 1;
+    const auto weight_one = static_cast<int16_t>(kWeight[static_cast<size_t>(a - 1)][static_cast<size_t>(b - 1)]);
+    const auto weight_two = static_cast<int16_t>(32 - weight_one);
+    for (int i = 0; i < SymbolModel::kSymbols; ++i) at[i] = one.start[i] * weight_one + two.start[i] * weight_two;
+    at[SymbolModel::kSymbols] = 1 << kSymbolBits;
   }
+  // The greatest symbol that starts at `position` or below: starts ascend, so the count of those that do, less one.
+  uint32_t find(uint32_t position) const {
+    const auto wanted = static_cast<int32_t>(position);
+    int32_t count = -1;
+    for (int i = 0; i < SymbolModel::kSymbols; ++i) count += at[i] <= wanted ? 1 : 0;
+    return static_cast<uint32_t>(count);
+  }
+
+ private:
+  // [a - 1][b - 1]: clamp(round(32 a, a + b), 1, 31): no division where symbols are coded.
+  static constexpr auto kWeight = [] {
+    constexpr int kCounts = SymbolModel::kTrusted + 1;
+    std::array<std::array<uint8_t, kCounts>, kCounts> weight{};
+    for (int a = 1; a <= kCounts; ++a)
+      for (int b = 1; b <= kCounts; ++b)
+        weight[static_cast<size_t>(a - 1)][static_cast<size_t>(b - 1)] =
+            static_cast<uint8_t>(std::clamp((32 * a + (a + b) / 2) / (a + b), 1, 31));
+    return weight;
+  }();
 };
 
-template <class Coder, class Starts>
+template <class Coder>
 uint32_t code_with(Coder& coder, const Starts& starts, uint32_t symbol) {
-  if constexpr (Coder::kDecodes) {
-    const uint32_t position = coder.symbol_position();
-    symbol = 0;
-    for (uint32_t half = SymbolModel::kSymbols / 2; half > 0; half /= 2)
-      symbol += position >= starts.at(symbol + half) ? half : 0;
-  }
-  const uint32_t start = starts.at(symbol);
-  coder.symbol(start, starts.at(symbol + 1) - start);
+  if constexpr (Coder::kDecodes) symbol = starts.find(coder.symbol_position());
+  const auto start = static_cast<uint32_t>(starts.at[symbol]);
+  coder.symbol(start, static_cast<uint32_t>(starts.at[symbol + 1]) - start);
   return symbol;
 }
 
 // A symbol that two contexts predict; both learn.
 template <class Coder>
 uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two, uint32_t symbol = 0) {
-  symbol = code_with(coder, MixedStarts(one, two), symbol);
+  symbol = code_with(coder, Starts(one, two), symbol);
   one.update(symbol, SymbolModel::kSlow);
   two.update(symbol, SymbolModel::kFast);
   return symbol;
@@ -111,13 +127,7 @@ uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two, uint32_t 
 
 template <class Coder>
 uint32_t code_symbol(Coder& coder, SymbolModel& model, uint32_t symbol = 0) {
-  struct Starts {
-    const SymbolModel& one;
-    uint32_t at(uint32_t s) const {
-      return s == SymbolModel::kSymbols ? 1u << kSymbolBits : static_cast<uint32_t>(one.start[s]) << 5;
-    }
-  };
-  symbol = code_with(coder, Starts{model}, symbol);
+  symbol = code_with(coder, Starts(model), symbol);
   model.update(symbol, SymbolModel::kAlone);
   return symbol;
 }
@@ -133,7 +143,7 @@ inline constexpr uint32_t kClasses = 17;
 inline constexpr int kExpectedHalves = 2 * kClasses + 2;
 inline constexpr auto kExpecting = [] {
   constexpr int kWeight[12] = {1024, 920, 640, 380, 210, 115, 62, 33, 18, 10, 6, 4};
-  constexpr uint8_t kTrust = 3;  // as if so many symbols had been seen
+  constexpr int16_t kTrust = 3;  // as if so many symbols had been seen
   std::array<SymbolModel, kExpectedHalves> models = {};
   for (int halves = 0; halves < kExpectedHalves; ++halves) {
     int sum[SymbolModel::kSymbols + 1] = {};
