@@ -37,8 +37,8 @@ struct ComponentModel {
 
   // scale: mean class of the neighbors' residuals in halves; other: largest class so far in this vertex.
   template <class Coder>
-  int32_t code(Coder& coder, AttributeBasis basis, uint32_t scale, uint32_t other, int32_t sign_before,
-               int32_t residual) {
+  [[gnu::always_inline]] inline int32_t code(Coder& coder, AttributeBasis basis, uint32_t scale, uint32_t other,
+                                             int32_t sign_before, int32_t residual) {
     return code_residual(coder, classes[basis].by_scale[scale], classes[basis].by_other[other],
                          details[sign_before == 0  ? 0
                                  : sign_before > 0 ? 1

@@ -8,6 +8,7 @@
 #include "geomcodec/materials.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
+#include "geomcodec/vertices.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -65,17 +66,21 @@ QuantizedMesh empty_mesh(const Header& header) {
   return mesh;
 }
 
+// A vertex of which nothing but the constant color is known.
+QuantizedVertex blank_vertex(const Header& header) {
+  QuantizedVertex blank;
+  if (header.constant_color) std::copy(header.color, header.color + 4, blank.color);
+  return blank;
+}
+
 // All vertices with their positions, the other attributes not yet coded.
-Result<void> decode_vertices(const ParsedStream& stream, const Topology& points, const Seams& seams,
-                             QuantizedMesh& mesh) {
+Result<void> decode_vertices(const ParsedStream& stream, const Topology& points, const Stencils& stencils,
+                             const Seams& seams, QuantizedMesh& mesh) {
   const Header& header = stream.header;
-  if (!header.has(kPositions)) return {};
-  auto positions = decode_positions(stream.section[kPositions], points, header.n_points() + header.n_isolated_vertices,
-                                    header.position_bits);
+  auto positions = decode_positions(stream.section[kPositions], points, stencils,
+                                    header.n_points() + header.n_isolated_vertices, header.position_bits);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
-  QuantizedVertex fill;
-  if (header.constant_color) std::copy(header.color, header.color + 4, fill.color);
-  mesh.vertices.assign(header.n_vertices(), fill);
+  mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
     const bool used = v < header.n_used_vertices;
     const Position& position = (*positions)[used ? seams.vertex_point[v] : v - header.n_split_vertices];
@@ -84,14 +89,10 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
   return {};
 }
 
-Result<void> decode_attributes(const ParsedStream& stream, const Topology& points, const Seams& seams,
+Result<void> decode_attributes(const ParsedStream& stream, const AttributeMesh& attributes, bool with_colors,
                                QuantizedMesh& mesh) {
   const Header& header = stream.header;
-  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return {};
-  const Topology topology = cut_at_seams(points, seams);
-  const Stencils stencils(topology);
-  const AttributeMesh attributes{topology, stencils, seams.sibling};
-  if (header.has(kColors)) {
+  if (with_colors && header.has(kColors)) {
     const auto done = decode_colors(stream.section[kColors], attributes, mesh.vertices);
     if (!done) return at(done.failure(), stream.section_offset(kColors));
   }
@@ -104,6 +105,35 @@ Result<void> decode_attributes(const ParsedStream& stream, const Topology& point
     if (!done) return at(done.failure(), stream.section_offset(kTexcoords));
   }
   return {};
+}
+
+// Vertices are points: the attributes see the same mesh as the positions, and colors are decoded beside these.
+Result<void> decode_without_seams(const ParsedStream& stream, const Topology& points, const Stencils& stencils,
+                                  const Seams& seams, QuantizedMesh& mesh) {
+  const Header& header = stream.header;
+  const AttributeMesh attributes{points, stencils, seams.sibling};
+  // Isolated vertices are a claim of the header until their positions are read: only as many as the faces have shown.
+  const bool together = header.has(kColors) && header.n_isolated_vertices <= header.n_used_vertices;
+  if (together) {
+    mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
+    VertexFailure failure;
+    if (!decode_positions_and_colors(stream.section[kPositions], stream.section[kColors], attributes,
+                                     header.position_bits, mesh.vertices, failure))
+      return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
+  } else {
+    PAC_CHECK(decode_vertices(stream, points, stencils, seams, mesh));
+  }
+  return decode_attributes(stream, attributes, !together, mesh);
+}
+
+Result<void> decode_with_seams(const ParsedStream& stream, const Topology& points, const Seams& seams,
+                               QuantizedMesh& mesh) {
+  const Header& header = stream.header;
+  PAC_CHECK(decode_vertices(stream, points, Stencils(points), seams, mesh));
+  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return {};
+  const Topology topology = cut_at_seams(points, seams);
+  const Stencils stencils(topology);
+  return decode_attributes(stream, {topology, stencils, seams.sibling}, true, mesh);
 }
 
 }  // namespace
@@ -126,8 +156,13 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
   if (!material) return at(material.failure(), stream.section_offset(kMaterials));
 
   QuantizedMesh mesh = empty_mesh(header);
-  PAC_CHECK(decode_vertices(stream, points, *seams, mesh));
-  PAC_CHECK(decode_attributes(stream, points, *seams, mesh));
+  if (header.has(kPositions)) {
+    if (header.n_split_vertices > 0)
+      PAC_CHECK(decode_with_seams(stream, points, *seams, mesh));
+    else
+      PAC_CHECK(decode_without_seams(stream, points, Stencils(points), *seams, mesh));
+  }
+  mesh.faces.reserve(points.n_faces());
   for (uint32_t face = 0; face < points.n_faces(); ++face)
     mesh.faces.push_back({points.face_first[face], points.face_size(face), (*material)[face]});
   mesh.indices = std::move(seams->corner_vertex);

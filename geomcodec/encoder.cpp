@@ -146,14 +146,25 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
 
 using Sections = std::array<std::vector<uint8_t>, kSections>;
 
-void encode_attributes(const Header& header, const Walked& walked, Sections& sections) {
-  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return;
-  const Topology topology = cut_at_seams(walked.points, walked.seams);
-  const Stencils stencils(topology);
-  const AttributeMesh mesh{topology, stencils, walked.seams.sibling};
+void encode_attributes(const Header& header, const AttributeMesh& mesh, const Walked& walked, Sections& sections) {
   if (header.has(kColors)) sections[kColors] = encode_colors(mesh, walked.vertices);
   if (header.has(kNormals)) sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits);
   if (header.has(kTexcoords)) sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits);
+}
+
+// Positions over points, all else over vertices; without seams these are the same mesh.
+void encode_vertices(const Header& header, const Walked& walked, Sections& sections) {
+  if (!header.has(kPositions)) return;
+  {
+    const Stencils stencils(walked.points);
+    sections[kPositions] = encode_positions(walked.points, stencils, positions_of(walked), header.position_bits);
+    if (header.n_split_vertices == 0)
+      return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
+  }
+  if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return;
+  const Topology topology = cut_at_seams(walked.points, walked.seams);
+  const Stencils stencils(topology);
+  encode_attributes(header, {topology, stencils, walked.seams.sibling}, walked, sections);
 }
 
 }  // namespace
@@ -165,9 +176,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   Sections sections;
   sections[kConnectivity] = std::move(walked.connectivity_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
-  if (header.has(kPositions))
-    sections[kPositions] = encode_positions(walked.points, positions_of(walked), mesh.position_bits);
-  encode_attributes(header, walked, sections);
+  encode_vertices(header, walked, sections);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
   if (header.has(kOrder)) sections[kOrder] = encode_order(walked.points, walked.order);
   for (const std::vector<uint8_t>& section : sections)

@@ -7,17 +7,19 @@
 #include <vector>
 
 #include "base/result.h"
+#include "geomcodec/stencil.h"
 #include "geomcodec/topology.h"
 
 namespace pac::geomcodec {
 
 using Position = std::array<uint16_t, 3>;
 
-// positions: of the points in coded order, then of the isolated vertices.
-std::vector<uint8_t> encode_positions(const Topology& topology, std::span<const Position> positions, int bits);
+// stencils: of `topology`. positions: of the points in coded order, then of the isolated vertices.
+std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& stencils,
+                                      std::span<const Position> positions, int bits);
 
 // n_positions >= topology.n_vertices. byte_offset of failures counts from the first byte of the section.
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
-                                               uint32_t n_positions, int bits);
+                                               const Stencils& stencils, uint32_t n_positions, int bits);
 
 }  // namespace pac::geomcodec

@@ -108,8 +108,9 @@ struct Starts {
   }();
 };
 
+// Inlined wherever residuals are coded, so that a decoder's state stays in registers (HeldCoder).
 template <class Coder>
-uint32_t code_with(Coder& coder, const Starts& starts, uint32_t symbol) {
+[[gnu::always_inline]] inline uint32_t code_with(Coder& coder, const Starts& starts, uint32_t symbol) {
   if constexpr (Coder::kDecodes) symbol = starts.find(coder.symbol_position());
   const auto start = static_cast<uint32_t>(starts.at[symbol]);
   coder.symbol(start, static_cast<uint32_t>(starts.at[symbol + 1]) - start);
@@ -118,7 +119,8 @@ uint32_t code_with(Coder& coder, const Starts& starts, uint32_t symbol) {
 
 // A symbol that two contexts predict; both learn.
 template <class Coder>
-uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two, uint32_t symbol = 0) {
+[[gnu::always_inline]] inline uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two,
+                                                   uint32_t symbol = 0) {
   symbol = code_with(coder, Starts(one, two), symbol);
   one.update(symbol, SymbolModel::kSlow);
   two.update(symbol, SymbolModel::kFast);
@@ -126,7 +128,7 @@ uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two, uint32_t 
 }
 
 template <class Coder>
-uint32_t code_symbol(Coder& coder, SymbolModel& model, uint32_t symbol = 0) {
+[[gnu::always_inline]] inline uint32_t code_symbol(Coder& coder, SymbolModel& model, uint32_t symbol = 0) {
   symbol = code_with(coder, Starts(model), symbol);
   model.update(symbol, SymbolModel::kAlone);
   return symbol;
@@ -183,8 +185,8 @@ struct DetailModel {
 // residual within -2^15 .. 2^15. The two `classes` models predict the class (15 stands for 15 and 16), `details` the
 // rest.
 template <class Coder>
-int32_t code_residual(Coder& coder, SymbolModel& classes_one, SymbolModel& classes_two, DetailModel& details,
-                      int32_t residual = 0) {
+[[gnu::always_inline]] inline int32_t code_residual(Coder& coder, SymbolModel& classes_one, SymbolModel& classes_two,
+                                                    DetailModel& details, int32_t residual = 0) {
   uint32_t length = class_of(residual);
   length = code_symbol(coder, classes_one, classes_two, std::min(length, 15u)) + (length == 16 ? 1 : 0);
   if (length == 0) return 0;

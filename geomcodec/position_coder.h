@@ -1,0 +1,272 @@
+// One position after the other, for encoder and decoder: prediction, choice among exact candidates, residuals.
+// FORMAT.md section 6.
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "geomcodec/position_weights.h"
+#include "geomcodec/symbol_model.h"
+
+namespace pac::geomcodec {
+
+// (a - d) x (b - d) over the parallelograms: the normal of the surface, as long as the areas are large.
+inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const Position> known) {
+  std::array<int64_t, 3> normal = {0, 0, 0};
+  for (int i = 0; i < stencil.n_parallelograms; ++i) {
+    const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    int64_t u[3], w[3];
+    for (size_t axis = 0; axis < 3; ++axis) {
+      u[axis] = int64_t{known[p.side_1][axis]} - known[p.opposite][axis];
+      w[axis] = int64_t{known[p.side_2][axis]} - known[p.opposite][axis];
+    }
+    normal[0] += u[1] * w[2] - u[2] * w[1];
+    normal[1] += u[2] * w[0] - u[0] * w[2];
+    normal[2] += u[0] * w[1] - u[1] * w[0];
+  }
+  return normal;
+}
+
+// Where a mesh is made of equal parts: parts (seeds of the walk) by their first vertex.
+class PositionParts {
+ public:
+  explicit PositionParts(const Topology& topology) {
+    uint32_t n_seen = 0;
+    for (uint32_t face = 0; face < topology.n_faces(); ++face) {
+      const uint32_t first = topology.face_first[face], gate = topology.twin[first];
+      const bool seed = gate == kNone || topology.corner_face[gate] >= face;
+      if (seed && (start_.empty() || start_.back() != n_seen)) start_.push_back(n_seen);
+      for (uint32_t corner = first; corner < topology.face_first[face + 1]; ++corner)
+        n_seen = std::max(n_seen, topology.corner_vertex[corner] + 1);
+    }
+    end_ = n_seen;
+  }
+  // For vertices in ascending order: how many vertices the part before had, 0 if there is none.
+  uint32_t lag(uint32_t vertex) {
+    while (part_ + 1 < start_.size() && start_[part_ + 1] <= vertex) ++part_;
+    return part_ == 0 || vertex >= end_ ? 0 : start_[part_] - start_[part_ - 1];
+  }
+  bool is_first(uint32_t vertex) const { return start_[part_] == vertex; }
+
+ private:
+  std::vector<uint32_t> start_;
+  uint32_t end_ = 0;
+  size_t part_ = 0;
+};
+
+template <class Coder>
+class PositionCoder {
+ public:
+  PositionCoder(const Topology& topology, const Stencils& stencils, Coder& coder, const PositionWeights& weights,
+                int bits)
+      : stencils_(stencils),
+        parts_(topology),
+        coder_(coder),
+        weights_(weights),
+        bits_(bits),
+        mask_((1 << bits) - 1),
+        half_(1 << (bits - 1)),
+        models_(std::make_unique<Models>()) {}
+
+  // Codes position v; those before it are complete.
+  void code(uint32_t v, std::span<Position> positions) {
+    if (weights_.raw) return code_raw(positions[v]);
+    stencils_.get(v, true, stencil_);
+    code(v, stencil_, positions);
+  }
+  // The same where the caller has the stencil (with twists) already; not for raw positions.
+  void code(uint32_t v, const Stencil& stencil, std::span<Position> positions);
+
+ private:
+  static constexpr size_t kChoices = 8;  // none of the predictions, the mean, single parallelograms
+  struct Models {
+    ClassModels<kClasses + 1> classes[3][kBases];
+    DetailModel details[3];
+    SymbolModel choice_by_basis[kBases][kChoices], choice_by_last[kChoices][kChoices];
+    Models() {
+      for (auto& models : choice_by_basis)
+        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
+      for (auto& models : choice_by_last)
+        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
+    }
+  };
+  struct Prediction {
+    int32_t at[3] = {0, 0, 0};
+    int order[3] = {0, 1, 2};
+    int64_t normal[3] = {0, 0, 0};  // in that order; the last one 0: no lifting
+    uint32_t spread = 0;            // class of what the neighbors' mean and the parallelograms disagree by
+    PositionBasis basis = kPrevious;
+  };
+  void code_raw(Position& position) {
+    for (uint16_t& coordinate : position) coordinate = static_cast<uint16_t>(coder_.raw(bits_, coordinate));
+  }
+  Prediction predict(uint32_t v, const Stencil& stencil, std::span<const Position> known) const;
+  void lift(const Stencil& stencil, std::span<const Position> known, Prediction& prediction) const;
+  void get_scales(uint32_t v, const Stencil& stencil, uint32_t (&scale)[3]) const;
+  bool code_choice(const Stencil& stencil, const Prediction& prediction, std::span<Position> positions, uint32_t v);
+  void code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction, Position& position);
+  void code_position(uint32_t v, const Stencil& stencil, const Prediction& prediction, std::span<Position> positions) {
+    if (!weights_.exact || !code_choice(stencil, prediction, positions, v))
+      code_residuals(v, stencil, prediction, positions[v]);
+  }
+  static int32_t cost(const Position& position, const int32_t (&prediction)[3]) {
+    uint32_t sum = 0;
+    for (size_t axis = 0; axis < 3; ++axis) sum += class_of(position[axis] - prediction[axis]);
+    return static_cast<int32_t>(sum);
+  }
+
+  const Stencils& stencils_;
+  PositionParts parts_;
+  Coder& coder_;
+  const PositionWeights weights_;
+  const int bits_;
+  const int32_t mask_, half_;
+  std::unique_ptr<Models> models_;
+  std::vector<uint32_t> memory_;  // per vertex: classes of its residuals, 10 bits each
+  Stencil stencil_;
+  int32_t error_[2][2] = {};  // [first of a part][by the part before]: recent costs
+  uint32_t last_choice_ = 0;
+};
+
+template <class Coder>
+typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t v, const Stencil& stencil,
+                                                                        std::span<const Position> known) const {
+  Prediction prediction;
+  prediction.basis = basis_of(stencil);
+  if (stencil.n_parallelograms > 0) {
+    const Features features = features_of(stencil, known);
+    const auto& share = weights_.share[PositionWeights::class_of(stencil)];
+    int32_t spread = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int64_t corrected = int64_t{features.base[axis]} * 128 + int64_t{features.mean_less_base[axis]} * share[0] +
+                                int64_t{features.twist[axis]} * share[1];
+      prediction.at[axis] = static_cast<int32_t>((corrected + 4096) >> 13);
+      spread = std::max(spread, std::abs(features.mean_less_base[axis]));
+    }
+    prediction.spread = std::min(class_of(spread >> 6), kClasses);
+    if (weights_.lifted) lift(stencil, known, prediction);
+  } else if (stencil.n_neighbors > 0) {
+    for (size_t axis = 0; axis < 3; ++axis)
+      prediction.at[axis] = scaled_mean(
+          neighbor_sum(stencil, [&](uint32_t vertex) { return int32_t{known[vertex][axis]}; }), stencil.n_neighbors, 0);
+  } else if (v > 0) {
+    std::copy_n(known[v - 1].begin(), 3, prediction.at);
+  }
+  for (int32_t& coordinate : prediction.at) coordinate = std::clamp(coordinate, 0, mask_);
+  return prediction;
+}
+
+// The axis nearest to the normal last.
+template <class Coder>
+void PositionCoder<Coder>::lift(const Stencil& stencil, std::span<const Position> known, Prediction& prediction) const {
+  const std::array<int64_t, 3> normal = normal_of(stencil, known);
+  int* order = prediction.order;
+  const auto swap_if_longer = [&](int i, int j) {
+    if (std::abs(normal[static_cast<size_t>(order[i])]) > std::abs(normal[static_cast<size_t>(order[j])]))
+      std::swap(order[i], order[j]);
+  };
+  swap_if_longer(0, 1);
+  swap_if_longer(1, 2);
+  swap_if_longer(0, 1);
+  for (int i = 0; i < 3; ++i) prediction.normal[i] = normal[static_cast<size_t>(order[i])];
+}
+
+// The neighbors' mean classes in halves; without neighbors those of the vertex before.
+template <class Coder>
+void PositionCoder<Coder>::get_scales(uint32_t v, const Stencil& stencil, uint32_t (&scale)[3]) const {
+  uint32_t sum = 0;  // of each role in 10 bits: at most 12 * 17
+  for (int i = 0; i < stencil.n_neighbors; ++i) sum += memory_[stencil.neighbor[i]];
+  const bool alone = stencil.n_neighbors == 0;
+  if (alone && v > 0) sum = memory_[v - 1];
+  for (int role = 0; role < 3; ++role)
+    scale[role] = static_cast<uint32_t>(
+        scaled_mean(static_cast<int32_t>(sum >> 10 * role & 1023), alone ? 1 : stencil.n_neighbors, 1));
+}
+
+template <class Coder>
+void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction,
+                                          Position& position) {
+  uint32_t other = prediction.spread;
+  uint32_t scale[3];
+  get_scales(v, stencil, scale);
+  int64_t missed[3] = {0, 0, 0};
+  uint32_t classes_coded = 0;
+  HeldCoder<Coder> coder = coder_;
+  for (size_t role = 0; role < 3; ++role) {
+    const auto axis = static_cast<size_t>(prediction.order[role]);
+    int32_t expected = prediction.at[axis];
+    if (role == 2 && prediction.normal[2] != 0) {
+      const int64_t sign = prediction.normal[2] < 0 ? -1 : 1;
+      const int64_t follows = round_quotient(
+          -sign * (prediction.normal[0] * missed[0] + prediction.normal[1] * missed[1]), sign * prediction.normal[2]);
+      expected = static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
+    }
+    int32_t residual = 0;
+    if constexpr (!Coder::kDecodes) residual = ((position[axis] - expected + half_) & mask_) - half_;
+    auto& classes = models_->classes[role][prediction.basis];
+    residual =
+        code_residual(coder, classes.by_scale[scale[role]], classes.by_other[other], models_->details[role], residual);
+    position[axis] = static_cast<uint16_t>((expected + residual) & mask_);
+    missed[role] = position[axis] - prediction.at[axis];
+    const uint32_t its_class = class_of(residual);
+    classes_coded |= its_class << 10 * role;
+    other = role == 0 ? its_class : std::max(other, its_class);
+  }
+  memory_[v] = classes_coded;
+  release(coder_, coder);
+}
+
+// Whether the position is the prediction or one parallelogram's, exactly: parts with flat sides are full of them.
+template <class Coder>
+bool PositionCoder<Coder>::code_choice(const Stencil& stencil, const Prediction& prediction,
+                                       std::span<Position> positions, uint32_t v) {
+  Position candidate[kChoices];
+  size_t n = 1;  // candidate[1 .. n - 1]
+  const auto add = [&](const int32_t(&at)[3]) {
+    Position position;
+    for (size_t axis = 0; axis < 3; ++axis) position[axis] = static_cast<uint16_t>(std::clamp(at[axis], 0, mask_));
+    if (n < kChoices && std::find(candidate + 1, candidate + n, position) == candidate + n) candidate[n++] = position;
+  };
+  add(prediction.at);
+  for (int i = 0; i < stencil.n_parallelograms; ++i) {
+    const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    int32_t at[3];
+    for (size_t axis = 0; axis < 3; ++axis)
+      at[axis] = positions[p.side_1][axis] + positions[p.side_2][axis] - positions[p.opposite][axis];
+    add(at);
+  }
+  uint32_t choice = 0;
+  if constexpr (!Coder::kDecodes) {
+    const auto found = std::find(candidate + 1, candidate + n, positions[v]);
+    choice = found == candidate + n ? 0 : static_cast<uint32_t>(found - candidate);
+  }
+  choice = code_symbol(coder_, models_->choice_by_basis[prediction.basis][n - 1],
+                       models_->choice_by_last[last_choice_][n - 1], choice);
+  last_choice_ = std::min<uint32_t>(choice, kChoices - 1);
+  if (choice == 0 || choice >= n) return false;
+  positions[v] = candidate[choice];
+  return true;
+}
+
+template <class Coder>
+void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Position> positions) {
+  memory_.push_back(0);
+  Prediction prediction = predict(v, stencil, positions);
+  const uint32_t lag = weights_.period != 0 ? weights_.period : parts_.lag(v);
+  if (lag == 0 || lag >= v) return code_position(v, stencil, prediction, positions);
+
+  // v moved from the vertex before as their counterparts in the part before did.
+  Prediction repeated;
+  repeated.basis = kRepeated;
+  for (size_t axis = 0; axis < 3; ++axis)
+    repeated.at[axis] =
+        std::clamp(positions[v - 1][axis] + positions[v - lag][axis] - positions[v - lag - 1][axis], 0, mask_);
+  int32_t(&error)[2] = error_[weights_.period == 0 && parts_.is_first(v) ? 1 : 0];
+  code_position(v, stencil, error[1] < error[0] ? repeated : prediction, positions);
+  error[0] += (64 * cost(positions[v], prediction.at) - error[0]) >> 3;
+  error[1] += (64 * cost(positions[v], repeated.at) - error[1]) >> 3;
+}
+
+}  // namespace pac::geomcodec

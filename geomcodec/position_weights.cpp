@@ -1,0 +1,102 @@
+// What the encoder of positions finds out about a mesh: shares by least squares, and repetition.
+#include "geomcodec/position_weights.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+namespace pac::geomcodec {
+namespace {
+
+// Least squares for the shares of one class, large misses counting less: the code's cost grows with their logarithm.
+class Fit {
+ public:
+  void add(const Features& features, const Position& position) {
+    double missed[3], size = 64;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      missed[axis] = 64.0 * position[axis] - features.base[axis];
+      size += std::abs(missed[axis]);
+    }
+    const double weight = 1 / size;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const double f = features.mean_less_base[axis], g = features.twist[axis], m = missed[axis];
+      ff_ += weight * f * f;
+      fg_ += weight * f * g;
+      gg_ += weight * g * g;
+      fm_ += weight * f * m;
+      gm_ += weight * g * m;
+    }
+    ++n_;
+  }
+  bool solve(int8_t (&share)[2]) const {
+    const double regular = 1e-3 * (ff_ + gg_) + 1e-9;
+    const double ff = ff_ + regular, gg = gg_ + regular, determinant = ff * gg - fg_ * fg_;
+    if (n_ < 24 || !(determinant > 0)) return false;
+    share[0] = rounded((fm_ * gg - gm_ * fg_) / determinant);
+    share[1] = rounded((gm_ * ff - fm_ * fg_) / determinant);
+    return true;
+  }
+
+ private:
+  static int8_t rounded(double share) {
+    return static_cast<int8_t>(std::clamp(std::floor(128 * share + 0.5), -127.0, 127.0));
+  }
+  double ff_ = 0, fg_ = 0, gg_ = 0, fm_ = 0, gm_ = 0;
+  uint32_t n_ = 0;
+};
+
+}  // namespace
+
+PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Position> positions) {
+  Fit fit[PositionWeights::kClasses];
+  Stencil stencil;
+  for (uint32_t v = 0; v < topology.n_vertices; ++v) {
+    stencils.get(v, true, stencil);
+    if (stencil.n_parallelograms > 0)
+      fit[PositionWeights::class_of(stencil)].add(features_of(stencil, positions), positions[v]);
+  }
+  PositionWeights weights;
+  for (int c = 0; c < PositionWeights::kClasses; ++c) {
+    weights.own[c] = fit[c].solve(weights.share[c]);
+    weights.customized = weights.customized || weights.own[c];
+  }
+  return weights;
+}
+
+uint32_t find_period(std::span<const Position> positions) {
+  constexpr size_t kSample = 4096, kTable = 4096;
+  const size_t n = std::min(kSample, positions.size());
+  const auto step = [&](size_t v) {
+    std::array<int32_t, 3> result;
+    for (size_t axis = 0; axis < 3; ++axis) result[axis] = positions[v][axis] - positions[v - 1][axis];
+    return result;
+  };
+  // Distances between occurrences of the same three steps.
+  std::vector<uint32_t> last(kTable, 0), votes(kSample, 0);
+  for (size_t v = 4; v < n; ++v) {
+    uint64_t hash = 0;
+    for (size_t i = 0; i < 3; ++i)
+      for (const int32_t s : step(v - i)) hash = (hash ^ static_cast<uint32_t>(s)) * 0x9E3779B97F4A7C15u;
+    uint32_t& before = last[hash >> 52];
+    if (before != 0) ++votes[v - before];
+    before = static_cast<uint32_t>(v);
+  }
+  uint32_t best = 0;
+  size_t best_hits = n / 2;
+  for (int round = 0; round < 8; ++round) {
+    const auto top = std::max_element(votes.begin(), votes.end());
+    const auto period = static_cast<uint32_t>(top - votes.begin());
+    if (*top == 0) break;
+    *top = 0;
+    for (const uint32_t candidate : {period, 2 * period, 4 * period}) {
+      size_t hits = 0;
+      for (size_t v = candidate + 1; v < n; ++v) hits += step(v) == step(v - candidate) ? 1 : 0;
+      if (hits <= best_hits) continue;
+      best_hits = hits;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace pac::geomcodec
