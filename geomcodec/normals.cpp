@@ -122,6 +122,7 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
   if (below) actual = folded(actual, m_);
   uint32_t other = 0;
   int32_t before = 0;
+  HeldCoder<Coder> coder = coder_;
   for (size_t i = 0; i < 2; ++i) {
     const auto off = [&](uint32_t vertex) { return int32_t{memory_[vertex].off_faces[i]}; };
     int32_t prediction = faces[i];
@@ -131,13 +132,14 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
     const uint32_t scale =
         mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex].residual_class[i]}; });
     const int32_t residual =
-        models_->component[i].code(coder_, basis, scale, other, before, wrapped(actual[i] - prediction));
+        models_->component[i].code(coder, basis, scale, other, before, wrapped(actual[i] - prediction));
     actual[i] = std::clamp(wrapped(prediction + residual), -m_, m_);
     memory_[v].off_faces[i] = static_cast<int16_t>(has_faces ? std::clamp(actual[i] - faces[i], -m_, m_) : 0);
     memory_[v].residual_class[i] = static_cast<uint8_t>(class_of(residual));
     other = class_of(residual);
     before = residual;
   }
+  release(coder_, coder);
   if (below) actual = folded(actual, m_);
   for (size_t i = 0; i < 2; ++i) normal[i] = static_cast<uint16_t>(actual[i] + m_);
 }

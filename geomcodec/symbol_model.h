@@ -199,6 +199,7 @@ struct DetailModel {
 template <class Coder>
 [[gnu::always_inline]] inline int32_t code_residual(Coder& coder, SymbolModel& classes_one, SymbolModel& classes_two,
                                                     DetailModel& details, int32_t residual = 0) {
+  if constexpr (Coder::kDecodes) residual = 0;  // whatever the caller had: a class of 16 would count below
   uint32_t length = class_of(residual);
   length = code_symbol(coder, classes_one, classes_two, std::min(length, 15u)) + (length == 16 ? 1 : 0);
   if (length == 0) return 0;

@@ -157,15 +157,17 @@ void TexcoordCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices)
   const Prediction& chosen = error_[1] < error_[0] ? plain : triangles;
   uint32_t other = 0;
   int32_t before = 0;
+  HeldCoder<Coder> coder = coder_;
   for (size_t i = 0; i < 2; ++i) {
     const uint32_t scale = mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex][i]}; });
     int32_t residual = ((texcoord[i] - chosen.at[i] + half_) & mask_) - half_;
-    residual = models_->component[i].code(coder_, chosen.basis, scale, other, before, residual);
+    residual = models_->component[i].code(coder, chosen.basis, scale, other, before, residual);
     texcoord[i] = static_cast<uint16_t>((chosen.at[i] + residual) & mask_);
     memory_[v][i] = static_cast<uint8_t>(class_of(residual));
     other = class_of(residual);
     before = residual;
   }
+  release(coder_, coder);
   learn(shapes, triangles, plain, texcoord);
 }
 
