@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "geomcodec/attribute_coder.h"
+#include "geomcodec/priors.h"
 
 namespace pac::geomcodec {
 
@@ -37,8 +38,22 @@ struct Shares {
 template <class Coder>
 class ColorCoder {
  public:
-  ColorCoder(const AttributeMesh& mesh, Coder& coder)
-      : mesh_(mesh), coder_(coder), models_(std::make_unique<Models>()) {}
+  struct Models {
+    ComponentModel channel[4];
+    explicit Models(bool trained) {
+      for (size_t basis = 0; trained && basis < kAttributeBases; ++basis)
+        for (const size_t c : {0, 1, 2})
+          channel[c].classes[basis].start_from(
+              kPriorModels[(c == 1 ? kPriorGreen : kPriorRedBlue) + kPriorOfAttributeBasis[basis]]);
+      for (const size_t c : {0, 1, 2})
+        if (trained) std::fill_n(channel[c].details, 3, kPriorDetails[c == 1 ? kDetailsOfGreen : kDetailsOfRedBlue]);
+    }
+  };
+
+  // trained: models start as training left them.
+  ColorCoder(const AttributeMesh& mesh, Coder& coder, bool trained)
+      : mesh_(mesh), coder_(coder), models_(std::make_unique<Models>(trained)) {}
+  const Models& models() const { return *models_; }
   void begin(std::span<QuantizedVertex> vertices);
   void code(uint32_t v, std::span<QuantizedVertex> vertices) {
     memory_.push_back(0);
@@ -53,9 +68,6 @@ class ColorCoder {
   }
 
  private:
-  struct Models {
-    ComponentModel channel[4];
-  };
   // Per channel, in 1/64.
   struct Means {
     int32_t neighbors[4], parallelograms[4];

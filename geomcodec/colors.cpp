@@ -2,16 +2,16 @@
 
 namespace pac::geomcodec {
 
-std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices) {
+std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, bool trained) {
   RangeEncoder coder;
-  ColorCoder<RangeEncoder> colors(mesh, coder);
+  ColorCoder<RangeEncoder> colors(mesh, coder, trained);
   return encode_attribute(colors, coder, vertices);
 }
 
 Result<void> decode_colors(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                           std::span<QuantizedVertex> vertices) {
+                           std::span<QuantizedVertex> vertices, bool trained) {
   RangeDecoder coder(bytes);
-  ColorCoder<RangeDecoder> colors(mesh, coder);
+  ColorCoder<RangeDecoder> colors(mesh, coder, trained);
   return decode_attribute(colors, coder, vertices);
 }
 

@@ -18,7 +18,8 @@ enum Flag : uint8_t {
   kOneStep = 8,
   kHasNormals = 16,
   kHasTexcoords = 32,
-  kAllFlags = 63
+  kTrained = 64,
+  kAllFlags = 127
 };
 
 void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
@@ -87,7 +88,7 @@ uint8_t flags_of(const Header& header) {
   return static_cast<uint8_t>((header.keeps_order ? kKeepsOrder : 0) | (header.constant_color ? kConstantColor : 0) |
                               (unit_grid ? kUnitGrid : 0) | (one_step && !unit_grid ? kOneStep : 0) |
                               (header.normal_bits != 0 ? kHasNormals : 0) |
-                              (header.texcoord_bits != 0 ? kHasTexcoords : 0));
+                              (header.texcoord_bits != 0 ? kHasTexcoords : 0) | (header.trained ? kTrained : 0));
 }
 
 }  // namespace
@@ -155,9 +156,11 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   Header& header = parsed.header;
   header.keeps_order = (flags & kKeepsOrder) != 0;
   header.constant_color = (flags & kConstantColor) != 0;
+  header.trained = (flags & kTrained) != 0;
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
   parse_counts(reader, header);
+  if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;

@@ -28,6 +28,7 @@ enum Section : uint32_t {
 struct Header {
   bool keeps_order = false;
   bool constant_color = false;
+  bool trained = false;  // models of positions and colors start as training left them
   int position_bits = 16;
   float origin[3] = {0, 0, 0};
   float step[3] = {1, 1, 1};

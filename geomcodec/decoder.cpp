@@ -77,8 +77,9 @@ QuantizedVertex blank_vertex(const Header& header) {
 Result<void> decode_vertices(const ParsedStream& stream, const Topology& points, const Stencils& stencils,
                              const Seams& seams, QuantizedMesh& mesh) {
   const Header& header = stream.header;
-  auto positions = decode_positions(stream.section[kPositions], points, stencils,
-                                    header.n_points() + header.n_isolated_vertices, header.position_bits);
+  auto positions =
+      decode_positions(stream.section[kPositions], points, stencils, header.n_points() + header.n_isolated_vertices,
+                       header.position_bits, header.trained);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
@@ -93,7 +94,7 @@ Result<void> decode_attributes(const ParsedStream& stream, const AttributeMesh& 
                                QuantizedMesh& mesh) {
   const Header& header = stream.header;
   if (with_colors && header.has(kColors)) {
-    const auto done = decode_colors(stream.section[kColors], attributes, mesh.vertices);
+    const auto done = decode_colors(stream.section[kColors], attributes, mesh.vertices, header.trained);
     if (!done) return at(done.failure(), stream.section_offset(kColors));
   }
   if (header.has(kNormals)) {
@@ -118,7 +119,7 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
     mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
     VertexFailure failure;
     if (!decode_positions_and_colors(stream.section[kPositions], stream.section[kColors], attributes,
-                                     header.position_bits, mesh.vertices, failure))
+                                     header.position_bits, header.trained, mesh.vertices, failure))
       return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {
     PAC_CHECK(decode_vertices(stream, points, stencils, seams, mesh));

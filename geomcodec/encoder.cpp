@@ -81,6 +81,7 @@ bool has_constant_color(const QuantizedMesh& mesh) {
 Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOptions& options) {
   Header header;
   header.keeps_order = options.keep_order;
+  header.trained = options.trained_priors && !mesh.vertices.empty();
   header.constant_color = has_constant_color(mesh);
   header.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, header.origin);
@@ -103,7 +104,7 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
 using Sections = std::array<std::vector<uint8_t>, kSections>;
 
 void encode_attributes(const Header& header, const AttributeMesh& mesh, const Walked& walked, Sections& sections) {
-  if (header.has(kColors)) sections[kColors] = encode_colors(mesh, walked.vertices);
+  if (header.has(kColors)) sections[kColors] = encode_colors(mesh, walked.vertices, header.trained);
   if (header.has(kNormals)) sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits);
   if (header.has(kTexcoords)) sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits);
 }
@@ -113,7 +114,8 @@ void encode_vertices(const Header& header, const Walked& walked, Sections& secti
   if (!header.has(kPositions)) return;
   {
     const Stencils stencils(walked.points);
-    sections[kPositions] = encode_positions(walked.points, stencils, positions_of(walked), header.position_bits);
+    sections[kPositions] =
+        encode_positions(walked.points, stencils, positions_of(walked), header.position_bits, header.trained);
     if (header.n_split_vertices == 0)
       return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geomcodec/position_weights.h"
+#include "geomcodec/priors.h"
 #include "geomcodec/symbol_model.h"
 
 namespace pac::geomcodec {
@@ -59,8 +60,25 @@ class PositionParts {
 template <class Coder>
 class PositionCoder {
  public:
+  static constexpr size_t kChoices = 8;  // none of the predictions, the mean, single parallelograms
+  struct Models {
+    ClassModels<kClasses + 1> classes[3][kBases];
+    DetailModel details[3];
+    SymbolModel choice_by_basis[kBases][kChoices], choice_by_last[kChoices][kChoices];
+    explicit Models(bool trained) {
+      for (auto& role : classes)
+        for (size_t basis = 0; trained && basis < kBases; ++basis)
+          role[basis].start_from(kPriorModels[kPriorPositions + kPriorOfPositionBasis[basis]]);
+      if (trained) std::fill_n(details, 3, kPriorDetails[kDetailsOfPositions]);
+      for (auto& models : choice_by_basis)
+        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
+      for (auto& models : choice_by_last)
+        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
+    }
+  };
+
   PositionCoder(const Topology& topology, const Stencils& stencils, Coder& coder, const PositionWeights& weights,
-                int bits)
+                int bits, bool trained)
       : stencils_(stencils),
         parts_(topology),
         coder_(coder),
@@ -68,7 +86,9 @@ class PositionCoder {
         bits_(bits),
         mask_((1 << bits) - 1),
         half_(1 << (bits - 1)),
-        models_(std::make_unique<Models>()) {}
+        models_(std::make_unique<Models>(trained)) {}
+
+  const Models& models() const { return *models_; }
 
   // Codes position v; those before it are complete.
   void code(uint32_t v, std::span<Position> positions) {
@@ -80,18 +100,6 @@ class PositionCoder {
   void code(uint32_t v, const Stencil& stencil, std::span<Position> positions);
 
  private:
-  static constexpr size_t kChoices = 8;  // none of the predictions, the mean, single parallelograms
-  struct Models {
-    ClassModels<kClasses + 1> classes[3][kBases];
-    DetailModel details[3];
-    SymbolModel choice_by_basis[kBases][kChoices], choice_by_last[kChoices][kChoices];
-    Models() {
-      for (auto& models : choice_by_basis)
-        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
-      for (auto& models : choice_by_last)
-        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
-    }
-  };
   struct Prediction {
     int32_t at[3] = {0, 0, 0};
     int order[3] = {0, 1, 2};

@@ -14,12 +14,13 @@ namespace pac::geomcodec {
 
 using Position = std::array<uint16_t, 3>;
 
-// stencils: of `topology`. positions: of the points in coded order, then of the isolated vertices.
+// stencils: of `topology`. trained: models start as training left them. positions: of the points in coded order, then
+// of the isolated vertices.
 std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& stencils,
-                                      std::span<const Position> positions, int bits);
+                                      std::span<const Position> positions, int bits, bool trained);
 
 // n_positions >= topology.n_vertices. byte_offset of failures counts from the first byte of the section.
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
-                                               const Stencils& stencils, uint32_t n_positions, int bits);
+                                               const Stencils& stencils, uint32_t n_positions, int bits, bool trained);
 
 }  // namespace pac::geomcodec

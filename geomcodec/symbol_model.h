@@ -184,12 +184,19 @@ struct ClassModels {
     for (size_t i = 0; i < 2 * kClasses; ++i) by_scale[i] = kExpecting[i];
     for (size_t i = 0; i < kOthers; ++i) by_other[i] = kExpecting[2 * i];
   }
+  // What training found instead: 2 * kClasses models by scale, then those by other.
+  template <size_t kCount>
+  void start_from(const std::array<SymbolModel, kCount>& trained) {
+    static_assert(kCount >= 2 * kClasses + kOthers);
+    std::copy_n(trained.begin(), 2 * kClasses, by_scale);
+    std::copy_n(trained.begin() + 2 * kClasses, kOthers, by_other);
+  }
 };
 
 // The sign and at most three bits below the leading one, by class.
 struct DetailModel {
   SymbolModel of_class[kClasses];
-  DetailModel() {
+  constexpr DetailModel() {
     for (int c = 1; c < static_cast<int>(kClasses); ++c) of_class[c] = SymbolModel(c >= 4 ? 16 : 1 << c);
   }
 };

@@ -6,8 +6,8 @@
 namespace pac::geomcodec {
 
 bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::span<const uint8_t> color_bytes,
-                                 const AttributeMesh& mesh, int position_bits, std::span<QuantizedVertex> vertices,
-                                 VertexFailure& failure) {
+                                 const AttributeMesh& mesh, int position_bits, bool trained,
+                                 std::span<QuantizedVertex> vertices, VertexFailure& failure) {
   const auto failed = [&](bool in_colors, const char* text) {
     failure = {in_colors, Failure{Error::corrupt, 0, text}};
     return false;
@@ -15,8 +15,9 @@ bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::s
   RangeDecoder of_positions(position_bytes), of_colors(color_bytes);
   PositionWeights weights;
   code_weights(of_positions, weights);
-  PositionCoder<RangeDecoder> position_coder(mesh.topology, mesh.stencils, of_positions, weights, position_bits);
-  ColorCoder<RangeDecoder> color_coder(mesh, of_colors);
+  PositionCoder<RangeDecoder> position_coder(mesh.topology, mesh.stencils, of_positions, weights, position_bits,
+                                             trained);
+  ColorCoder<RangeDecoder> color_coder(mesh, of_colors, trained);
   color_coder.begin(vertices);
   std::vector<Position> positions(vertices.size());
   Stencil stencil;

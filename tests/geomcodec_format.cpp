@@ -40,19 +40,29 @@ TEST_CASE("the worked example of FORMAT.md is what encode writes") {
                                          0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x3F, 0x04, 0x00, 0x00, 0x02,
                                          0x00, 0x00, 0xC8, 0x64, 0x32, 0xFF, 0x01, 0x0B, 0x3D, 0xC4, 0x1A, 0x3E, 0x50,
                                          0x23, 0xDF, 0x4C, 0xAA, 0x76, 0x1C, 0x84, 0xAD, 0xAC, 0x45, 0xA6};
-  REQUIRE(encode(mesh).value() == expected);
+  REQUIRE(encode(mesh, {.trained_priors = false}).value() == expected);
   REQUIRE(pac::test::same(decode(expected).value(), mesh));
 }
 
 TEST_CASE("streams are the same bytes on every platform and compiler") {
-  Fnv fnv;
+  Fnv fnv, trained;
   for (const NamedMesh& entry : mesh_zoo()) {
     for (const bool keep_order : {false, true}) {
-      const std::vector<uint8_t> bytes = encode(entry.mesh, {keep_order}).value();
+      const std::vector<uint8_t> bytes = encode(entry.mesh, {keep_order, false}).value();
       for (const uint8_t byte : bytes) fnv.add(byte);
+      for (const uint8_t byte : encode(entry.mesh, {keep_order, true}).value()) trained.add(byte);
     }
   }
   REQUIRE(fnv.hash() == 0x6b3ff19a6804b67eu);
+  REQUIRE(trained.hash() == 0xe7c960a6c987a029u);
+}
+
+TEST_CASE("streams whose models start untrained are still written and read") {
+  for (const NamedMesh& entry : mesh_zoo()) {
+    CAPTURE(entry.name);
+    const std::vector<uint8_t> bytes = encode(entry.mesh, {.keep_order = true, .trained_priors = false}).value();
+    REQUIRE(pac::test::same(decode(bytes).value(), entry.mesh));
+  }
 }
 
 std::string summary(const QuantizedMesh& mesh) {
@@ -84,8 +94,8 @@ TEST_CASE("a decoder written from FORMAT.md alone, in another language, reads ou
   std::vector<std::string> files;
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.indices.size() > 1200 || entry.mesh.vertices.size() > 1200) continue;
-    for (const bool keep_order : {false, true}) {
-      const std::vector<uint8_t> bytes = encode(entry.mesh, {keep_order}).value();
+    for (const bool trained : {false, true}) {
+      const std::vector<uint8_t> bytes = encode(entry.mesh, {!trained, trained}).value();
       files.push_back("pgc_reference_" + std::to_string(files.size()) + ".pgc");
       REQUIRE(pac::write_file(files.back(), bytes).ok());
       command += " " + files.back();

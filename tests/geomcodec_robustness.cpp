@@ -147,7 +147,9 @@ TEST_CASE("each header field at its limit and one past it") {
   const Case cases[] = {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
-      {"flags", header(64 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::unsupported, "stream uses features that are unknown"},
+      {"flags", header(128 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::unsupported, "stream uses features that are unknown"},
+      {"trained for nothing", header(64 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::corrupt,
+       "models are trained for no vertex"},
       {"two grids", header(12, 16, {0, 0, 0, 0, 0, 0}), Error::corrupt, "flags contradict one another"},
       {"bits 0", header(4, 0, {0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},
       {"bits 17", header(4, 17, {0, 0, 0, 0, 0, 0}), Error::corrupt, "position bits are not in 1..16"},

@@ -4,6 +4,8 @@
 usage: pgc_reference_decoder.py FILE.pgc...   prints, per file: vertices, faces, FNV-1a hash of everything decoded
 """
 import math
+import os
+import re
 import struct
 import sys
 import zlib
@@ -32,8 +34,20 @@ class Bit:  # section 3
 WEIGHT = [1024, 920, 640, 380, 210, 115, 62, 33, 18, 10, 6, 4]
 
 
+def read_table(name, sets, contexts):  # [set][context][class]
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "geomcodec", name)
+    numbers = [int(x) for x in re.findall(r"\d+", open(path).read())]
+    assert len(numbers) == sets * contexts * 16
+    rows = [numbers[i : i + 16] for i in range(0, len(numbers), 16)]
+    return [rows[i : i + contexts] for i in range(0, len(rows), contexts)]
+
+
+def read_priors():  # the sets of classes, the sets of details
+    return read_table("priors.inc", 10, 52), read_table("detail_priors.inc", 3, 17)
+
+
 class Symbols:  # section 3
-    def __init__(self, used=16, halves=None):
+    def __init__(self, used=16, halves=None, weights=None, trust=3):
         self.start = [2 * i + 32736 * min(i, used) // used for i in range(17)]
         self.seen = 0
         if halves is not None:
@@ -42,6 +56,9 @@ class Symbols:  # section 3
                 sums.append(sums[-1] + WEIGHT[min(11, abs(2 * c - halves))])
             self.start = [2 * i + 32736 * sums[i] // sums[16] for i in range(17)]
             self.seen = 3
+        if weights is not None and any(weights):
+            self.start = [2 * i + 32736 * sum(weights[:i]) // sum(weights) for i in range(17)]
+            self.seen = trust
 
     def learn(self, symbol, slowest):
         step = min(32767, 655360 // (10 * self.seen + 16))
@@ -156,17 +173,21 @@ class Decoder:
             m.learn(symbol, slowest)
         return symbol
 
-    def residual(self, one, two, details):  # the contexts' last parts: a class in halves, a class
-        for key, halves in ((one, one[-1]), (two, 2 * two[-1])):
+    # The contexts' last parts are a class in halves, a class. prior: weights of classes, of details.
+    def residual(self, one, two, details, prior=None):
+        for key, halves, context in ((one, one[-1], one[-1]), (two, 2 * two[-1], 34 + two[-1])):
             if key not in self.models:
-                self.models[key] = Symbols(halves=halves)
+                self.models[key] = Symbols(halves=halves, weights=prior and prior[0][context])
         length = self.symbol([one, two])
         if length == 0:
             return 0
         if length == 15:
             length += self.raw(1)
         modeled = min(length - 1, 3)
-        detail = self.symbol([details + (length,)], 2 << modeled) & ((2 << modeled) - 1)
+        key = details + (length,)
+        if prior and any(prior[1][length]) and key not in self.models:
+            self.models[key] = Symbols(weights=prior[1][length], trust=16)
+        detail = self.symbol([key], 2 << modeled) & ((2 << modeled) - 1)
         x = 1 << modeled | detail & ((1 << modeled) - 1)
         left = length - 1 - modeled
         if left:
@@ -181,6 +202,8 @@ class Header:  # section 2
     def __init__(self, b):
         assert b[:3] == b"PGC" and b[3] == 2
         self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
+        assert self.flags < 128
+        self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
         if not self.flags & 4:
             self.origin = self.floats(3)
@@ -606,7 +629,8 @@ class Positions:  # section 6
                 follows = -(normal[0] * missed[0] + normal[1] * missed[1])
                 expected += rnd(follows, normal[2]) if normal[2] > 0 else rnd(-follows, -normal[2])
                 expected = max(0, min(self.mask, expected))
-            r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role))
+            r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role),
+                                self.h.priors and (self.h.priors[0][(0, 0, 1, 2, 3, 3, 1)[basis]], self.h.priors[1][0]))
             self.at[v][axis] = expected + r & self.mask
             missed[role] = self.at[v][axis] - at[axis]
             self.classes[v][role] = abs(r).bit_length()
@@ -667,9 +691,9 @@ class Attributes:  # sections 7 to 9
             values[v], memory[v] = list(values[w]), memory[w]
         return self.last_same
 
-    def component(self, name, basis, scale, other, before):
+    def component(self, name, basis, scale, other, before, prior=None):
         sign = 0 if before == 0 else 1 if before > 0 else 2
-        return self.d.residual((name, "scale", basis, scale), (name, "other", basis, other), (name, "detail", sign))
+        return self.d.residual((name, "scale", basis, scale), (name, "other", basis, other), (name, "detail", sign), prior)
 
     def code_colors(self):
         d, memory, self.last_same = self.d, {}, 1
@@ -701,7 +725,11 @@ class Attributes:  # sections 7 to 9
                     ratio = abs(c) // variance * (1 if c >= 0 else -1)
                     prediction += rnd(max(-512, min(512, ratio)) * green, 256)
                 prediction = max(0, min(255, prediction))
-                r = self.component(channel, s.basis, scale, other, before)
+                prior = None
+                if self.h.priors and channel < 3:
+                    prior = (self.h.priors[0][(4 if channel == 1 else 7) + (0, 0, 1, 1, 2, 2)[s.basis]],
+                             self.h.priors[1][1 if channel == 1 else 2])
+                r = self.component(channel, s.basis, scale, other, before, prior)
                 level = self.colors[v][channel] = prediction + r & 255
                 other, before = max(other, abs(r).bit_length()), r
                 if channel == 1:
