@@ -18,6 +18,22 @@ namespace pac {
 
 #if PAC_THREADS
 
+// Some ten microseconds: loops follow one another, and to wake a thread that sleeps takes longer than to watch that
+// long. Returns whether `done` became true.
+template <class Done>
+bool watch(bool worthwhile, Done&& done) {
+  constexpr int kTries = 2000;
+  for (int i = 0; worthwhile && i < kTries; ++i) {
+    if (done()) return true;
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    __asm__ volatile("yield");
+#endif
+  }
+  return done();
+}
+
 // A job is published under the mutex with a new generation number; workers take indices from `next` until none is left.
 struct ThreadPool::State {
   std::mutex mutex;
@@ -27,9 +43,10 @@ struct ThreadPool::State {
   void* context = nullptr;
   int64_t count = 0;
   std::atomic<int64_t> next{0};
-  uint64_t generation = 0;
-  int n_active = 0;
-  bool stop = false;
+  std::atomic<uint64_t> generation{0};
+  std::atomic<int> n_active{0};
+  std::atomic<bool> stop{false};
+  bool has_processors = false;  // one for each thread
 
   void take_indices() {
     for (int64_t i = next.fetch_add(1); i < count; i = next.fetch_add(1)) call(context, i);
@@ -37,14 +54,18 @@ struct ThreadPool::State {
   void worker_loop() {
     uint64_t seen = 0;
     std::unique_lock lock(mutex);
+    const auto is_called = [&] { return stop || generation != seen; };
     while (true) {
-      wake.wait(lock, [&] { return stop || generation != seen; });
+      wake.wait(lock, is_called);
       if (stop) return;
       seen = generation;
       lock.unlock();
       take_indices();
       lock.lock();
       if (--n_active == 0) done.notify_one();
+      lock.unlock();
+      watch(has_processors, is_called);
+      lock.lock();
     }
   }
 };
@@ -56,6 +77,7 @@ int hardware_thread_count() {
 
 ThreadPool::ThreadPool(int n_threads) : state_(new State) {
   if (n_threads <= 0) n_threads = hardware_thread_count();
+  state_->has_processors = n_threads <= hardware_thread_count();
   state_->workers.reserve(static_cast<size_t>(n_threads - 1));
   for (int i = 1; i < n_threads; ++i) state_->workers.emplace_back([state = state_.get()] { state->worker_loop(); });
 }
@@ -91,8 +113,10 @@ void ThreadPool::run(int64_t count, void (*call)(void*, int64_t), void* context)
   }
   state.wake.notify_all();
   state.take_indices();
+  const auto is_done = [&] { return state.n_active == 0; };
+  watch(state.has_processors, is_done);
   std::unique_lock lock(state.mutex);
-  state.done.wait(lock, [&] { return state.n_active == 0; });
+  state.done.wait(lock, is_done);
 }
 
 #else
