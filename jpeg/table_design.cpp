@@ -94,37 +94,40 @@ void DcDesigner::add(const int16_t* coefficients, size_t n_blocks, int& dc) {
 }
 
 void DcDesigner::finish() {
-  const auto gather = [](const std::vector<uint32_t>& counts, std::vector<Occurrence>& list) {
-    list.clear();
-    for (size_t i = 0; i < counts.size(); ++i)
-      if (counts[i] > 0) list.push_back({static_cast<int>(i), counts[i]});
+  const auto sum_up = [](const std::vector<uint32_t>& counts, std::vector<Below>& below) {
+    size_t end = counts.size();
+    while (end > 0 && counts[end - 1] == 0) --end;
+    Below sums{0, 0, 0};
+    below.assign(1, sums);
+    for (size_t i = 0; i < end; ++i) {
+      const auto n = int64_t{counts[i]}, magnitude = static_cast<int64_t>(i);
+      sums = {sums.count + n, sums.sum + n * magnitude, sums.squares + n * magnitude * magnitude};
+      below.push_back(sums);
+    }
   };
-  gather(value_counts_, values_);
-  gather(difference_counts_, differences_);
+  sum_up(value_counts_, values_below_);
+  sum_up(difference_counts_, differences_below_);
 }
 
-// J(step) = bits + weight * sum(error^2).
+// J(step) = bits + weight * sum(error^2), level by level.
 double DcDesigner::cost(int step, double weight) const {
-  double squared_error = 0;
-  for (int next = step - step / 2, level = 0; const Occurrence& value : values_) {  // ascending
-    for (; value.magnitude >= next; next += step) level += step;
-    const double error = value.magnitude - level;
-    squared_error += value.count * error * error;
-  }
-  EntropyCounter entropy;
-  uint32_t in_level = 0;
-  bool is_zero = true;
-  const auto close_level = [&] {
-    is_zero ? entropy.add(in_level) : entropy.add_both_signs(in_level);
-    is_zero = false;
-    in_level = 0;
+  const auto for_each_level = [step](const std::vector<Below>& below, auto&& visit) {
+    const auto n = static_cast<int>(below.size()) - 1;
+    for (int value = 0, first = 0, next = step - step / 2; first < n; value += step, first = next, next += step) {
+      const Below &a = below[static_cast<size_t>(first)], &b = below[static_cast<size_t>(std::min(next, n))];
+      visit(value, Below{b.count - a.count, b.sum - a.sum, b.squares - a.squares});
+    }
   };
-  for (int next = step - step / 2; const Occurrence& difference : differences_) {
-    for (; difference.magnitude >= next; next += step) close_level();
-    in_level += difference.count;
-  }
-  close_level();
-  return entropy.bits() + weight * squared_error;
+  int64_t squared_error = 0;
+  for_each_level(values_below_, [&](int value, const Below& in) {
+    squared_error += in.squares - value * (2 * in.sum - value * in.count);
+  });
+  EntropyCounter entropy;
+  for_each_level(differences_below_, [&](int value, const Below& in) {
+    const auto count = static_cast<double>(in.count);
+    value == 0 ? entropy.add(count) : entropy.add_both_signs(count);
+  });
+  return entropy.bits() + weight * static_cast<double>(squared_error);
 }
 
 // Every step: the good ones may be single.

@@ -23,14 +23,14 @@ class DcDesigner {
  private:
   // Values and magnitudes of differences in units of an eighth of a sample, which is one unit of the DCT.
   static constexpr int kRange = 1040;
-  struct Occurrence {
-    int magnitude;
-    uint32_t count;
+  // Of all magnitudes below one: how many there are, their sum and their squares' sum.
+  struct Below {
+    int64_t count, sum, squares;
   };
   double cost(int step, double weight) const;
 
   std::vector<uint32_t> value_counts_, difference_counts_;
-  std::vector<Occurrence> values_, differences_;
+  std::vector<Below> values_below_, differences_below_;  // up to behind the largest magnitude
 };
 
 // Histograms of the AC coefficients of an image, for each frequency and each of some kinds of blocks.
