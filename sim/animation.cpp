@@ -95,9 +95,7 @@ Result<void> show_frame(int number, const AnimationOptions& options, const Anima
   add_frame(out.polygon_assisted, charged, sent.quality, scores[1]);
   out.packet_bytes += packet.size();
   if (!sink.frame) return {};
-  // Behind the byte that says how it is predicted, a video frame is MPEG-1.
-  const auto code = std::span<const uint8_t>(sent.code).subspan(is_video ? 1 : 0);
-  sink.frame({number, sent.high, image.shown, composite, image.code, code, packet});
+  sink.frame({number, sent.high, image.shown, composite, image.code, sent.code, packet});
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include "sim/model_prediction.h"
 #include "sim/model_vectors.h"
 #include "sim/object_motion.h"
+#include "sim/picture_packing.h"
 #include "sim/signed_composite.h"
 
 namespace pac::sim {
@@ -18,7 +19,7 @@ namespace pac::sim {
 namespace {
 
 // The first byte of each frame: what the decoder must know before the picture.
-constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8;
+constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8, kPacked = 16;
 
 // Eye and metric forgive errors of fine detail; the flat default spends bits on it. Entries 16 (DC) to 58.
 mpeg1::QuantizerMatrix sloping_matrix(double at_dc, double slope) {
@@ -98,6 +99,9 @@ class SharedState {
     return &predictor_.reference(base_, depth, id, camera, objects);
   }
 
+  // Of the frame whose reference was asked for last; empty where it was the codec's own.
+  PlaneView<const uint32_t> surface() const { return predictor_.surface(); }
+
   // What the codec made of it.
   void keep(const mpeg1::FrameView& coded, bool uses_predictor) {
     if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr, base_);
@@ -156,6 +160,23 @@ double key_quantizer_for(const AssistedVideoOptions& options) {
   return std::max(1.0, options.quantizer_scale / kKeyRatio);
 }
 
+// A bit rate counts what is sent: each picture that the encoder offers is packed for its size.
+struct PackedSearch {
+  QuantizerSearch search;
+  PicturePacker* packer;  // null: pictures are sent as they are
+  bool is_key;
+  PlaneView<const uint32_t> surface;
+  const Bytes& out;
+  size_t begin;  // of the picture in `out`
+
+  static double code_again(void* context, double scale, uint64_t size_bytes) {
+    PackedSearch& self = *static_cast<PackedSearch*>(context);
+    if (self.packer != nullptr)
+      size_bytes = self.packer->packed_size(std::span(self.out).subspan(self.begin), self.is_key, self.surface);
+    return self.search.next(scale, size_bytes);
+  }
+};
+
 struct AssistedEncoder::State {
   AssistedVideoOptions options;
   Isa isa;
@@ -165,6 +186,8 @@ struct AssistedEncoder::State {
   Frame420 source;
   RgbImage difference;
   LeakyBucket bucket;
+  PicturePacker packer;
+  Bytes picture;                        // of the last frame
   double last_quantizer = 0;            // of a picture between two that stand alone; 0: none yet
   std::optional<ModelFlow> block_flow;  // of block prediction: where the search for vectors begins
 
@@ -182,9 +205,18 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
   if (const char* problem = problem_with(options.rate, scene.width, scene.height))
     return Failure{Error::bad_argument, 0, problem};
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
-  return AssistedEncoder(std::make_unique<State>(
-      State{options, isa, SharedState(scene, isa), std::move(encoder), -1, Frame420(scene.width, scene.height),
-            RgbImage(scene.width, scene.height), LeakyBucket(options.rate), 0, block_flow_for(scene, options, isa)}));
+  return AssistedEncoder(std::make_unique<State>(State{options,
+                                                       isa,
+                                                       SharedState(scene, isa),
+                                                       std::move(encoder),
+                                                       -1,
+                                                       Frame420(scene.width, scene.height),
+                                                       RgbImage(scene.width, scene.height),
+                                                       LeakyBucket(options.rate),
+                                                       PicturePacker(scene.width, scene.height),
+                                                       {},
+                                                       0,
+                                                       block_flow_for(scene, options, isa)}));
 }
 
 AssistedEncoder::AssistedEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -196,6 +228,10 @@ bool AssistedEncoder::next_is_key(bool force_key) const {
   const State& s = *state_;
   return force_key || s.options.prediction == Prediction::none || s.since_key < 0 ||
          (s.options.key_interval > 0 && s.since_key + 1 >= s.options.key_interval);
+}
+
+std::span<const uint8_t> AssistedEncoder::picture() const {
+  return state_->picture;
 }
 
 const LeakyBucket& AssistedEncoder::bucket() const {
@@ -221,10 +257,17 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   AssistedVideoOptions wanted = options;
   if (quantizer_scale > 0) wanted.quantizer_scale = quantizer_scale;
   picture.quantizer_scale = is_key ? key_quantizer_for(wanted) : wanted.quantizer_scale;
-  QuantizerSearch search(s.bucket.next(), frame.overhead_bytes + 1);  // the byte before the picture
+  const bool packs = replaced && options.is_packed;
+  const size_t before = out.size(), begin = before + 1;  // a byte before the picture
+  PackedSearch search{QuantizerSearch(s.bucket.next(), frame.overhead_bytes + 1),
+                      packs ? &s.packer : nullptr,
+                      is_key,
+                      s.shared.surface(),
+                      out,
+                      begin};
   if (options.rate.is_on()) {
     picture.quantizer_scale = s.first_guess(is_key);
-    picture.code_again = QuantizerSearch::code_again;
+    picture.code_again = PackedSearch::code_again;
     picture.code_again_context = &search;
   }
 
@@ -238,10 +281,18 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
     s.block_flow->remember(frame.camera, frame.objects);
   }
 
-  const size_t before = out.size();
   out.push_back(static_cast<uint8_t>((is_key ? kKey : 0) | static_cast<int>(options.prediction) << kPredictionShift |
                                      (options.difference == Difference::full ? kFull : 0)));
   PAC_TRY(const mpeg1::PictureReport coded, s.encoder.add(s.source, out, picture));
+  s.picture.assign(out.begin() + static_cast<ptrdiff_t>(begin), out.end());
+  if (packs) {
+    const Bytes packed = s.packer.pack(s.picture, is_key, s.shared.surface());
+    if (!packed.empty()) {
+      out[before] |= kPacked;
+      out.resize(begin);
+      out.insert(out.end(), packed.begin(), packed.end());
+    }
+  }
   s.shared.keep(s.encoder.reconstruction(), replaced);
   s.since_key = is_key ? 0 : s.since_key + 1;
   AssistedReport report;
@@ -263,7 +314,11 @@ void AssistedEncoder::composite(ConstRgbView low, RgbView shown) const {
 
 struct AssistedDecoder::State {
   State(const AssistedScene& scene, const Limits& limits, Isa isa)
-      : width(scene.width), height(scene.height), shared(scene, isa), decoder(options(limits), isa) {}
+      : width(scene.width),
+        height(scene.height),
+        shared(scene, isa),
+        decoder(options(limits), isa),
+        packer(scene.width, scene.height) {}
 
   mpeg1::DecoderOptions options(const Limits& limits) {
     mpeg1::DecoderOptions result;
@@ -283,6 +338,8 @@ struct AssistedDecoder::State {
   int width, height;
   SharedState shared;
   mpeg1::Decoder decoder;
+  PicturePacker packer;
+  Bytes unpacked;
   const Frame420* reference = nullptr;
   bool was_key = false;
 };
@@ -307,7 +364,7 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   State& s = *state_;
   if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
   const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
-  if ((bytes[0] & ~(kKey | kPredictionMask | kFull)) != 0 || prediction > static_cast<int>(Prediction::model))
+  if ((bytes[0] & ~(kKey | kPredictionMask | kFull | kPacked)) != 0 || prediction > static_cast<int>(Prediction::model))
     return Failure{Error::unsupported, 0, "unknown kind of video frame"};
   const auto kind = static_cast<Prediction>(prediction);
   const bool is_full = (bytes[0] & kFull) != 0;
@@ -315,7 +372,16 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   s.was_key = (bytes[0] & kKey) != 0;
   s.reference = s.shared.reference(kind, is_full ? Difference::full : Difference::halved, s.was_key, low, depth, id,
                                    camera, objects);
-  s.decoder.feed(bytes.subspan(1));
+  std::span<const uint8_t> picture_bytes = bytes.subspan(1);
+  if ((bytes[0] & kPacked) != 0) {
+    if (s.reference == nullptr) return Failure{Error::corrupt, 0, "packed picture without the model's prediction"};
+    s.unpacked.clear();
+    PAC_CHECK(s.packer.unpack(picture_bytes, s.was_key, s.shared.surface(), s.unpacked));
+    picture_bytes = s.unpacked;
+  } else if (s.was_key) {
+    s.packer.forget();
+  }
+  s.decoder.feed(picture_bytes);
   s.decoder.end_picture();
   PAC_TRY(const mpeg1::DecodedPicture* picture, s.decoder.next());
   if (picture == nullptr) return Failure{Error::truncated, bytes.size(), "no picture in the video frame"};

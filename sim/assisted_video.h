@@ -2,15 +2,15 @@
 // state and run the same code on it: there is no drift.
 //
 //   prediction none    every picture stands alone
-//              block   MPEG-1's own: blocks of the picture before, moved [Levoy95 s.3]; where to, the search begins
-//              with
-//                      what the model knows (sim/model_vectors.h)
+//              block   MPEG-1's own: blocks of the picture before, moved [Levoy95 s.3]; the search for where to
+//                      begins with what the model knows (sim/model_vectors.h)
 //              model   the decoded difference carried by the model (sim/model_prediction.h)
 //   difference halved  D = 127 + (H-L)/2 in RGB, as the paper; a stock decoder shows it as a picture
 //              full    P pictures that predict H itself from L (+ carried difference): nothing is divided by two, and
 //                      what the model predicts well is a skipped macroblock
 // block codes halved differences; none and model either. The macroblock syntax is MPEG-1's throughout: only the
-// reference picture is replaced.
+// reference picture is replaced. Where it is, no stock decoder shows the stream anyway: its pictures are packed
+// (sim/picture_packing.h), and unpacked they are MPEG-1's to the bit.
 #pragma once
 
 #include <cstdint>
@@ -39,6 +39,7 @@ struct AssistedVideoOptions {
   int key_interval = 132;          // 1..132: pictures from one that stands alone to the next; 0: the first only
   int picture_rate_code = 3;       // for the headers only
   mpeg1::Effort effort = mpeg1::Effort::normal;
+  bool is_packed = true;  // where the reference picture is replaced
   BitRate rate;  // on: every picture's quantizer is chosen for it, and the quantizers above are where the search begins
 };
 
@@ -92,6 +93,9 @@ class AssistedEncoder {
 
   // What the client shows for the last frame, bit for bit. Of the frames' size.
   void composite(ConstRgbView low, RgbView shown) const;
+
+  // The last frame's MPEG-1 picture, as it was before it was packed.
+  std::span<const uint8_t> picture() const;
 
   // Of a bit rate; without one it has no capacity.
   const LeakyBucket& bucket() const;

@@ -67,6 +67,9 @@ class ModelPredictor {
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr, const Frame420& base);
 
+  // Per pixel the surface that L shows in the frame whose reference was asked for last; until keep().
+  PlaneView<const uint32_t> surface() const { return now_[0].surface.view(); }
+
   // The kept difference: luma and chroma.
   const BorderedPlane& difference(int component) const { return kept_[component]; }
 

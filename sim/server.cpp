@@ -100,7 +100,7 @@ namespace {
 // What one codec makes of a frame.
 struct CodedFrame {
   double quality = 0;
-  Bytes bytes;
+  Bytes bytes, picture;  // as sent; as a stock decoder reads them, where they differ
   RgbImage composite;
   AssistedReport video;
 };
@@ -125,6 +125,7 @@ Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& c
   const AssistedFrame frame{images.high.view(), images.low.view(), images.depth.view(), images.id.view(), camera,
                             overhead_bytes,     images.objects};
   PAC_TRY(out.video, video.encode(frame, out.bytes, key));
+  out.picture.assign(video.picture().begin(), video.picture().end());
   out.quality = out.video.quantizer_scale;
   out.composite = RgbImage(options.width, options.height);
   video.composite(images.low.view(), out.composite.view());
@@ -163,7 +164,7 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   last.quality = coded.quality;
   last.model_bytes = images.model.bytes.size();
   last.difference_bytes = coded.bytes.size();
-  last.code = std::move(coded.bytes);
+  last.code = std::move(state_->video ? coded.picture : coded.bytes);
   last.packet_bytes = bytes.size();
   const bool is_whole = bytes.size() >= kFramePacketOverhead + last.model_bytes + last.difference_bytes;
   last.object_bytes = is_whole ? bytes.size() - kFramePacketOverhead - last.model_bytes - last.difference_bytes : 0;

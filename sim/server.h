@@ -38,7 +38,7 @@ struct ServerFrame {
   RgbImage composite;    // what a client will show, bit for bit
   double quality = 0;    // coded quality of D; codec mpeg1: quantizer_scale
   AssistedReport video;  // codec mpeg1
-  Bytes code;            // of the difference: JPEG, or the byte that says how it is predicted and MPEG-1
+  Bytes code;            // of the difference: JPEG, or MPEG-1 as it was before it was packed
   // object_bytes: of a whole packet, what it says of moved objects (of a short one they are part of the packet).
   uint64_t model_bytes = 0, difference_bytes = 0, object_bytes = 0, packet_bytes = 0;
 };
