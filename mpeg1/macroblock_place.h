@@ -14,6 +14,9 @@ constexpr int kBitsMotionCoded = 2, kBitsCoded = 3, kBitsMotion = 4, kBitsIntra 
 
 constexpr int kMaxCandidates = 16;
 
+// Of SAD a bit, over quantizer_scale / 16: a good prediction saves more than the bits of its levels.
+constexpr uint32_t kVectorLambdaQ4 = 8;
+
 class MacroblockPlace {
  protected:
   MacroblockPlace(const PictureTask& task, Band& band)
@@ -36,7 +39,7 @@ class MacroblockPlace {
            task_.bits_of_difference[std::min(std::abs(v.y_halfpel - p.y_halfpel), kMaxDifference)];
   }
 
-  // The caller's, the coarse search's, those of the neighbors in the band, those of the picture before. Returns how
+  // The caller's, those of the neighbors in the band, those of the picture before. Returns how
   // many.
   int collect_candidates(MotionVector (&candidates)[kMaxCandidates]) const {
     int n = 0;
@@ -45,7 +48,6 @@ class MacroblockPlace {
     };
     for (int i = 0; i < std::min(task_.candidates_per_macroblock, 8); ++i)
       add(task_.candidates[address() * task_.candidates_per_macroblock + i]);
-    if (task_.coarse_vectors != nullptr) add(task_.coarse_vectors[row_ / 2 * task_.coarse_columns + column_ / 2]);
     if (column_ > 0) add(vector_at(column_ - 1, row_));
     if (row_ > band_.first_row) {
       add(vector_at(column_, row_ - 1));
@@ -72,7 +74,9 @@ class MacroblockPlace {
     input.predicted = predicted_vector();
     input.candidates = candidates;
     input.n_candidates = n_candidates;
-    input.lambda_q4 = 16u * static_cast<uint32_t>(quantizer());
+    if (task_.coarse_vectors != nullptr)
+      input.far_vector = task_.coarse_vectors + (row_ / 2 * task_.coarse_columns + column_ / 2);
+    input.lambda_q4 = kVectorLambdaQ4 * static_cast<uint32_t>(quantizer());
     input.bits_of_difference = task_.bits_of_difference;
     return input;
   }

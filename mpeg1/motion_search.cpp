@@ -14,6 +14,7 @@ class Search {
     try_candidates();
     if (options_.wide) walk(4);
     walk(2);
+    look_far();
     refine();
     return best_;
   }
@@ -72,6 +73,23 @@ class Search {
       if (moved < 0) return;
       came_from = moved ^ 2;
     }
+  }
+
+  // Another descent, which must be clearly better: what lies far from the neighbors' vectors costs them bits, too.
+  void look_far() {
+    constexpr uint32_t kLeastGainPercent = 5, kLeastGainBits = 10;
+    if (in_.far_vector == nullptr) return;
+    const SearchResult near = best_;
+    const MotionVector v = in_.range.clamp(*in_.far_vector);
+    best_.cost = ~uint32_t{0};
+    try_whole(v.x_halfpel & ~1, v.y_halfpel & ~1);
+    if (best_.vector == near.vector || best_.cost > 2 * near.cost) {
+      best_ = near;
+      return;
+    }
+    walk(2);
+    const uint32_t least_gain = near.cost * kLeastGainPercent / 100 + (kLeastGainBits * in_.lambda_q4 >> 4);
+    if (best_.cost + least_gain >= near.cost) best_ = near;
   }
 
   uint32_t half_distance(int x, int y) const {

@@ -33,6 +33,7 @@ struct SearchInput {
   MotionVector predicted;          // that the stream codes the difference from
   const MotionVector* candidates;  // any vectors; clamped here
   int n_candidates;
+  const MotionVector* far_vector = nullptr;  // where another search may begin; not in search_fast()
   uint32_t lambda_q4;                 // cost of a bit in units of SAD / 16
   const uint8_t* bits_of_difference;  // vector bits by |difference|, indexed 0..kMaxDifference
 };

@@ -82,7 +82,7 @@ struct SequenceOptions {
   int gop_length = 15;            // an I picture every so many pictures, 1..132; display order is coding order
   // kLeastQuantizerScale..31 where bit_rate_bps is 0: of P pictures; below 1, quantizer_scale 1 and matrices that are
   // multiplied by it; between integers, macroblocks of both kinds. I pictures are quantized
-  // finer, down to 0.6 of it where the group before stood still: their quality is what the others inherit.
+  // finer, down to 0.7 of it where the group before stood still: their quality is what the others inherit.
   double quantizer_scale = 4;
   int64_t bit_rate_bps = 0;  // 400..104857200 (multiple of 400 after rounding up): constant bit rate with VBV
   int vbv_buffer_size = 0;   // 1..1023 units of 16384 bits; 0: chosen

@@ -15,7 +15,7 @@ constexpr double kLambda = 0.85;
 
 // I pictures: what quantizer_scale is multiplied by where the macroblock moves and where it stays, how much of it is
 // expected to stay before anything was seen, and what lambda is multiplied by.
-constexpr double kMovingIntraScale = 0.8, kStillIntraScale = 0.6, kUnknownStillness = 0.3, kIntraLambda = 0.8;
+constexpr double kMovingIntraScale = 0.85, kStillIntraScale = 0.7, kUnknownStillness = 0.3, kIntraLambda = 0.8;
 
 double mix(double a, double b, double share) {
   return a + (b - a) * share;
