@@ -83,6 +83,7 @@ struct Decoder::State {
   bool waits_for_output = false;  // references[1] has not been delivered
   bool in_picture = false;        // slices belong to spare
   PictureContext context;
+  SliceReader reader{context};
   std::vector<uint8_t> covered;
   bool has_output = false;
   DecodedPicture output;
@@ -189,6 +190,7 @@ Result<void> Decoder::State::start_picture(const PictureHeader& header) {
   context.non_intra = &non_intra;
   context.covered = &covered;
   covered.assign(static_cast<size_t>(columns) * static_cast<size_t>(rows), 0);
+  reader.start_picture();
   in_picture = true;
   return {};
 }
@@ -200,7 +202,6 @@ Result<void> Decoder::State::take_slice(uint8_t code, std::span<const uint8_t> p
   }
   if (code > context.rows)
     return violation({Error::corrupt, offset_of(at), "slice_vertical_position below the picture"});
-  SliceReader reader(context);
   const char* problem = reader.read(payload, code - 1);
   if (problem == nullptr) return {};
   const uint64_t inside = std::min<uint64_t>(reader.byte_offset(), payload.size());

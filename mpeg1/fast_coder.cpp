@@ -113,7 +113,7 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
   Token* tokens = coded_.tokens + coded_.n_tokens;
   int16_t* coefficients = coded_.coefficients + 64 * coded_.n_blocks;
   uint8_t places[64] = {};  // of the tokens, natural order
-  std::memset(coefficients, 0, 64 * sizeof *coefficients);
+  clear_block(coefficients);
   struct Prefix {
     int count = 0, bits = kEndOfBlock.length + kPatternBits;
     int64_t gain = 0, saved = 0;  // gain less what the bits are worth

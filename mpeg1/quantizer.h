@@ -2,11 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 #include "base/kernels/kernels.h"
 #include "mpeg1/mpeg1.h"
 
 namespace pac::mpeg1 {
+
+// A block's 64 coefficients become zero: in pieces that compilers make a few vector stores of, where for 128 bytes at
+// once they may choose a string instruction that takes longer than a block's transform.
+inline void clear_block(int16_t* coefficients) {
+  for (int i = 0; i < 64; i += 16) std::memset(coefficients + i, 0, 32);
+}
 
 constexpr int kMaxLevel = 255;      // |level| that the escape codes [table B.5f]
 constexpr int kMinMatrixEntry = 3;  // the encoder's: smaller divisors do not fit BlockQuantizer

@@ -66,7 +66,7 @@ void place(int block, const Planes& target, int column, int row, uint8_t*& sampl
 
 template <bool kIsIntra>
 void dequantize(const int16_t* levels, uint64_t mask, const uint16_t* weight, int16_t* coefficients) {
-  std::memset(coefficients, 0, 128);
+  clear_block(coefficients);
   for (; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
     const int level = levels[position], magnitude = level < 0 ? -level : level;

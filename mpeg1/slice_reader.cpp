@@ -6,6 +6,7 @@
 
 #include "base/kernels/block_kernels.h"
 #include "mpeg1/motion_vector.h"
+#include "mpeg1/quantizer.h"
 #include "mpeg1/vlc_tables.h"
 
 namespace pac::mpeg1 {
@@ -20,11 +21,6 @@ MotionVector full_pel(MotionVector vector, bool doubled) {
 void fill_block(int value, uint8_t* samples, ptrdiff_t stride) {
   const auto sample = static_cast<uint8_t>(std::clamp(value, 0, 255));
   for (int y = 0; y < 8; ++y) std::memset(samples + y * stride, sample, 8);
-}
-
-// A size that the compiler knows, block by block.
-void clear_blocks(int16_t* coefficients, size_t n_blocks) {
-  for (size_t i = 0; i < n_blocks; ++i) std::memset(coefficients + 64 * i, 0, 128);
 }
 
 // The odd value next to `value` toward zero, clipped [2.4.4.1]; sign: -1 or 0. 0 stays 0.
@@ -113,16 +109,37 @@ void make_dequantizer(const QuantizerMatrix& matrix, bool is_intra, Dequantizer&
 }
 
 SliceReader::SliceReader(const PictureContext& picture) : picture_(picture) {
+  std::memset(inter_.coefficients, 0, sizeof inter_.coefficients);
+  std::memset(intra_.coefficients, 0, sizeof intra_.coefficients);
+}
+
+void SliceReader::start_picture() {
   for (int block = 0; block < 6; ++block) {
-    strides_[block] = picture.target.stride[plane_of(block)];
+    strides_[block] = picture_.target.stride[plane_of(block)];
     if (block < 4) offsets_[block] = (block & 1) * 8 + (block >> 1) * 8 * strides_[block];
   }
 }
 
+void SliceReader::transform(Transform transform, Pending& pending, size_t keep) {
+  if (keep != 0) transform(pending.coefficients, keep, pending.samples, pending.strides);
+  for (size_t i = 0; i < pending.n; ++i) clear_block(pending.coefficients + 64 * i);
+  pending.n = 0;
+}
+
+void SliceReader::transform_all() {
+  transform(picture_.kernels->idct_add, inter_, inter_.n);
+  transform(picture_.kernels->idct_put, intra_, intra_.n);
+}
+
 const char* SliceReader::read(std::span<const uint8_t> bytes, int row) {
+  const char* problem = read_macroblocks(bytes, row);
+  transform_all();
+  return problem;
+}
+
+const char* SliceReader::read_macroblocks(std::span<const uint8_t> bytes, int row) {
   bits_ = UnitReader(bytes);
   error_ = nullptr;
-  std::memset(pending_.coefficients, 0, sizeof pending_.coefficients);
   reset_dc();
   reset_vectors();
   address_ = row * picture_.columns - 1;
@@ -247,7 +264,8 @@ bool SliceReader::read_intra_blocks() {
   const IntraByPosition dequantize{picture_.intra->scaled[quantizer_]};
   const bool is_d = picture_.header.type == PictureType::D;
   UnitReader bits = bits_;  // a copy in registers
-  size_t n = 0;
+  const size_t before = intra_.n;
+  size_t n = before;
   bool good = true;
   for (int block = 0; block < 6 && good; ++block) {
     int dc = 0;
@@ -255,32 +273,33 @@ bool SliceReader::read_intra_blocks() {
     good = read_dc(bits, block, dc);
     if (!good) break;
     uint8_t* samples = samples_of(block);
-    int16_t* coefficients = pending_.coefficients + 64 * n;
+    int16_t* coefficients = intra_.coefficients + 64 * n;
     const int last = is_d ? 0 : read_coefficients(bits, dequantize, 0, coefficients);
     if (last == 0) {
       fill_block((dc + 4) >> 3, samples, strides_[block]);
       continue;
     }
     coefficients[0] = static_cast<int16_t>(dc);
-    pending_.samples[n] = samples;
-    pending_.strides[n++] = strides_[block];
+    intra_.samples[n] = samples;
+    intra_.strides[n++] = strides_[block];
     good = last > 0 || fail(text_of(last));
   }
   bits_ = bits;
-  if (good) picture_.kernels->idct_put(pending_.coefficients, n, pending_.samples, pending_.strides);
-  clear_blocks(pending_.coefficients, n);
+  intra_.n = n;
+  if (!good || n + 6 > kWaiting) transform(picture_.kernels->idct_put, intra_, good ? n : before);
   return good;
 }
 
 template <class Dequantize>
 bool SliceReader::read_coded_blocks(int pattern, const Dequantize& dequantize) {
   UnitReader bits = bits_;  // a copy in registers
-  size_t n = 0;
+  const size_t before = inter_.n;
+  size_t n = before;
   int result = 0;
   for (unsigned left = static_cast<unsigned>(pattern) << 26; left != 0 && result >= 0;) {
     const int block = std::countl_zero(left);  // bit 5 of the pattern is the first block
     left &= ~(1u << (31 - block));
-    int16_t* coefficients = pending_.coefficients + 64 * n;
+    int16_t* coefficients = inter_.coefficients + 64 * n;
     bits.refill();
     int position = -1;
     if (bits.peek(1) != 0) {  // dct_coeff_first: '1s' is run 0, level 1
@@ -294,13 +313,13 @@ bool SliceReader::read_coded_blocks(int pattern, const Dequantize& dequantize) {
       coefficients[0] = 0;
       continue;
     }
-    pending_.samples[n] = samples_of(block);
-    pending_.strides[n++] = strides_[block];
+    inter_.samples[n] = samples_of(block);
+    inter_.strides[n++] = strides_[block];
   }
   bits_ = bits;
+  inter_.n = n;
   if (result < 0) fail(text_of(result));
-  if (result >= 0) picture_.kernels->idct_add(pending_.coefficients, n, pending_.samples, pending_.strides);
-  clear_blocks(pending_.coefficients, n);
+  if (result < 0 || n + 6 > kWaiting) transform(picture_.kernels->idct_add, inter_, result < 0 ? before : n);
   return result >= 0;
 }
 

@@ -32,10 +32,12 @@ struct PictureContext {
   std::vector<uint8_t>* covered = nullptr;
 };
 
-// Reconstructs the macroblocks of one slice.
+// Reconstructs the macroblocks of slices.
 class SliceReader {
  public:
   explicit SliceReader(const PictureContext& picture);
+  // The context describes another picture.
+  void start_picture();
 
   // `bytes` begin after the slice start code and end before the next start code; row = slice_vertical_position - 1,
   // inside the picture. Null, or what is wrong: the macroblocks before it stand.
@@ -45,17 +47,24 @@ class SliceReader {
   uint64_t byte_offset() const { return static_cast<uint64_t>(bits_.position_bits()) / 8; }
 
  private:
-  // A block waiting for its transform.
+  // Blocks that wait for their transform, of some macroblocks: in pairs and well after their coefficients were stored.
+  static constexpr size_t kWaiting = 20;
   struct Pending {
-    alignas(64) int16_t coefficients[6 * 64];
-    uint8_t* samples[6];
-    ptrdiff_t strides[6];
+    size_t n = 0;
+    uint8_t* samples[kWaiting];
+    ptrdiff_t strides[kWaiting];
+    alignas(64) int16_t coefficients[kWaiting * 64];  // zeros from 64 * n on
   };
+  using Transform = void (*)(const int16_t*, size_t, uint8_t* const*, const ptrdiff_t*);
+  // The first `keep` of them; all wait no longer.
+  static void transform(Transform transform, Pending& pending, size_t keep);
+  void transform_all();
 
   bool fail(const char* text) {
     error_ = text;
     return false;
   }
+  const char* read_macroblocks(std::span<const uint8_t> bytes, int row);
   bool read_macroblock();
   bool read_address(int& address);
   bool skip_macroblocks(int from, int to);
@@ -84,7 +93,7 @@ class SliceReader {
   uint8_t flags_ = 0;        // macroblock_type of the macroblock, and of the one before for B's skipped ones
   int dc_[3] = {};           // predictions, times 8 [2.4.4.1]
   MotionVector vectors_[2];  // forward, backward: predictions, in the units of the stream
-  Pending pending_;
+  Pending inter_, intra_;    // to be added to predictions, to be put
 };
 
 }  // namespace pac::mpeg1
