@@ -1,4 +1,5 @@
 // MPEG-1 through both arms: the sequence drawn once, quantizers searched, then what a server sends and a client shows.
+#include <algorithm>
 #include <utility>
 
 #include "sim/animation_parts.h"
@@ -17,7 +18,7 @@ class VideoAnimation {
       : options_(options), scene_(scene), video_(options.video) {
     image_.quantizer_scale = options.quantizer_scale;
     image_.picture_rate_code = video_.picture_rate_code = mpeg1::picture_rate_code(1000 * options.frames_per_second);
-    image_.group_length = video_.key_interval > 0 ? video_.key_interval : 132;
+    image_.group_length = longest_group(video_.key_interval > 0 ? video_.key_interval : 132);
     image_.effort = video_.effort;
     image_.threads = options.render.threads;
     image_.isa = options.render.isa;
@@ -41,6 +42,12 @@ class VideoAnimation {
   const VideoFrame& image_frame(size_t i) const { return shown_[i]; }
 
  private:
+  // Players' files repeat pictures of slow sequences: they count among a group's 132 [2.4.4.2].
+  int longest_group(int wanted) const {
+    const int legal_milli = mpeg1::kPictureRatesMilli[image_.picture_rate_code];
+    return std::clamp(132 * 1000 * options_.frames_per_second / legal_milli, 1, wanted);
+  }
+
   // The polygon-assisted arm as it goes; the other one, with all frames known, at its bytes.
   Result<void> choose_at_rate(const std::vector<Shot>& shots) {
     video_.rate = {options_.bit_rate_bps, options_.frames_per_second, options_.buffer_seconds};

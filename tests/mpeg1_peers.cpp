@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/y4m.h"
+#include "mpeg1/repeats.h"
 #include "mpeg1/system.h"
 #include "tests/support/mpeg1_clip.h"
 #include "tests/support/peer.h"
@@ -73,6 +74,40 @@ TEST_CASE("we decode ffmpeg's streams as it does: B pictures, odd sizes, many sl
     strict.strict = true;
     require_alike(decode_all(bytes, strict), ffmpeg_decodes(dir, dir.file("theirs.m1v")));
   }
+}
+
+TEST_CASE("at 20 frames a second pictures are repeated, and ffmpeg decodes each as often as we do") {
+  if (!have_peer("ffmpeg")) return;
+  TempDir dir;
+  mpeg1::SequenceOptions options;
+  options.width = 100;
+  options.height = 60;
+  options.picture_rate_code = mpeg1::picture_rate_code(20000);
+  options.gop_length = 7;
+  const std::vector<uint8_t> slow = encode_clip(clip(100, 60, 20), options);
+  const auto bytes = mpeg1::with_repeats(slow, 20000);
+  REQUIRE(bytes.ok());
+  const auto info = mpeg1::read_info(*bytes);
+  REQUIRE(info.ok());
+  CHECK(info->repeated_pictures == 4);  // 20 / 20 seconds at 23.976 a second
+  CHECK(bytes->size() < slow.size() + 4 * 40);
+  mpeg1::ErrorReport report;
+  const std::vector<Frame420> ours = decode_all(*bytes, {}, &report);
+  CHECK(report.errors == 0);
+  CHECK(ours.size() == 24);
+  size_t n_new = 1;
+  for (size_t i = 1; i < ours.size(); ++i)
+    if (!equal(mpeg1::view_of(ours[i - 1]), mpeg1::view_of(ours[i]))) ++n_new;
+  CHECK(n_new == 20);
+  write_bytes(dir.file("ours.m1v"), *bytes);
+  require_alike(ours, ffmpeg_decodes(dir, dir.file("ours.m1v")));
+  const auto system = mpeg1::multiplex(*bytes);
+  REQUIRE(system.ok());
+  write_bytes(dir.file("ours.mpg"), *system);
+  require_alike(ours, ffmpeg_decodes(dir, dir.file("ours.mpg")));
+  const auto alone = mpeg1::with_repeats(slow, 23976);
+  REQUIRE(alone.ok());
+  CHECK(*alone == slow);
 }
 
 TEST_CASE("ffmpeg's system streams demultiplex") {

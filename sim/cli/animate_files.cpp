@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "base/y4m.h"
+#include "mpeg1/repeats.h"
+#include "mpeg1/system.h"
 #include "sim/cli/command.h"
 #include "sim/cli/report_files.h"
 #include "sim/frame420.h"
@@ -46,16 +48,30 @@ void AnimationFiles::add_frame(const sim::AnimationFrame& frame) {
   add_picture(composite_y4m_, frame.composite);
 }
 
+// The paper's 20 frames a second is no legal picture_rate: files for players repeat pictures.
+int AnimationFiles::write_videos() const {
+  const auto image = mpeg1::with_repeats(image_, 1000 * fps_);
+  if (!image.ok()) return data_error("image.m1v", image.failure());
+  const auto system = mpeg1::multiplex(*image);
+  if (!system.ok()) return data_error("image.mpg", system.failure());
+  const auto difference = mpeg1::with_repeats(difference_, 1000 * fps_);
+  if (!difference.ok()) return data_error("difference.m1v", difference.failure());
+  if (const int code = write_output(folder_ + "/image.m1v", *image); code != kDone) return code;
+  if (const int code = write_output(folder_ + "/image.mpg", *system); code != kDone) return code;
+  return write_output(folder_ + "/difference.m1v", *difference);
+}
+
+int AnimationFiles::write_jpegs() const {
+  if (const int code = write_output(folder_ + "/image.mjpeg", image_); code != kDone) return code;
+  return write_output(folder_ + "/difference.mjpeg", difference_);
+}
+
 int AnimationFiles::write() const {
   if (folder_.empty()) return kDone;
-  const bool is_video = codec_ == sim::VideoCodec::mpeg1;
+  const int code_of_streams = codec_ == sim::VideoCodec::mpeg1 ? write_videos() : write_jpegs();
+  if (code_of_streams != kDone) return code_of_streams;
   const std::pair<const char*, const Bytes*> files[] = {
-      {is_video ? "image.m1v" : "image.mjpeg", &image_},
-      {is_video ? "difference.m1v" : "difference.mjpeg", &difference_},
-      {"session.pacs", &pacs_},
-      {"H.y4m", &high_y4m_},
-      {"image.y4m", &image_y4m_},
-      {"composite.y4m", &composite_y4m_}};
+      {"session.pacs", &pacs_}, {"H.y4m", &high_y4m_}, {"image.y4m", &image_y4m_}, {"composite.y4m", &composite_y4m_}};
   for (const auto& [name, bytes] : files)
     if (const int code = write_output(folder_ + "/" + name, *bytes); code != kDone) return code;
   return kDone;

@@ -7,7 +7,8 @@
 
 namespace pac::cli {
 
-// DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them) or image.m1v, difference.m1v;
+// DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them) or image.m1v, image.mpg (the same
+// in a system stream), difference.m1v, all at a legal picture_rate with repeated pictures;
 // session.pacs, and the sequences H.y4m, image.y4m, composite.y4m. Collected in memory, written at the end.
 class AnimationFiles {
  public:
@@ -22,6 +23,8 @@ class AnimationFiles {
 
  private:
   void add_picture(Bytes& sequence, const RgbImage& picture) const;
+  int write_videos() const;
+  int write_jpegs() const;
 
   std::string folder_;
   sim::VideoCodec codec_;

@@ -1,8 +1,10 @@
 // `pac mpeg1 encode`.
+#include <algorithm>
 #include <cstdio>
 
 #include "base/y4m.h"
 #include "mpeg1/mpeg1.h"
+#include "mpeg1/repeats.h"
 #include "mpeg1/system.h"
 #include "sim/cli/command.h"
 
@@ -15,19 +17,11 @@ struct EncodeSettings {
   int bit_rate_bps = 0;
 };
 
-// The nearest code that is not slower, or the fastest.
-int rate_code(const Y4mHeader& header) {
-  if (header.rate_denominator == 0) return 5;
+// Frames in 1000 seconds, at least one; those of NTSC where the header tells none.
+int rate_milli(const Y4mHeader& header) {
+  if (header.rate_numerator == 0 || header.rate_denominator == 0) return 29970;
   const int64_t milli = (int64_t{header.rate_numerator} * 1000 + header.rate_denominator / 2) / header.rate_denominator;
-  return mpeg1::picture_rate_code(static_cast<int>(std::min<int64_t>(milli, 60000)));
-}
-
-// How often each frame is shown so that a clip slower than any legal picture_rate keeps its duration: picture
-// `n_written` is due before the frame after `n_frames` of them.
-bool is_behind(uint64_t n_written, uint64_t n_frames, const Y4mHeader& header, int code) {
-  if (header.rate_numerator == 0 || header.rate_denominator == 0) return false;
-  const double seconds = static_cast<double>(n_frames) * header.rate_denominator / header.rate_numerator;
-  return static_cast<double>(n_written) + 0.5 < seconds * mpeg1::kPictureRatesMilli[code] / 1000;
+  return static_cast<int>(std::clamp<int64_t>(milli, 1, 60000));
 }
 
 int print_summary(const Options& options, const EncodeSettings& settings, uint64_t frames, uint64_t repeated,
@@ -51,7 +45,8 @@ int encode(const Options& options, EncodeSettings settings) {
   if (!reader.ok()) return data_error(settings.in, reader.failure());
   settings.sequence.width = reader->header().width;
   settings.sequence.height = reader->header().height;
-  settings.sequence.picture_rate_code = rate_code(reader->header());
+  const int rate = rate_milli(reader->header());
+  settings.sequence.picture_rate_code = mpeg1::picture_rate_code(rate);
   settings.sequence.bit_rate_bps = settings.bit_rate_bps;
   settings.sequence.threads = options.threads;
   auto encoder = mpeg1::Encoder::create(settings.sequence, options.isa);
@@ -66,7 +61,10 @@ int encode(const Options& options, EncodeSettings settings) {
     const auto report = encoder->add(frame, out);
     if (!report.ok()) return data_error(settings.in, report.failure());
     ++frames;
-    for (; is_behind(frames + repeated, frames, reader->header(), settings.sequence.picture_rate_code); ++repeated)
+    // So that a clip slower than any legal picture_rate keeps its duration.
+    for (; mpeg1::is_repeat_due(frames + repeated, frames, static_cast<uint64_t>(rate),
+                                settings.sequence.picture_rate_code);
+         ++repeated)
       if (const auto again = encoder->repeat(out); !again.ok()) return data_error(settings.in, again.failure());
     const double bytes_a_frame = static_cast<double>(settings.sequence.width) * settings.sequence.height * 1.5;
     progress.show(std::min(1.0, static_cast<double>(frames) * bytes_a_frame / static_cast<double>(bytes->size())),
