@@ -6,7 +6,8 @@
 namespace pac::mpeg1 {
 namespace {
 
-constexpr int kMaxSteps = 8;
+constexpr int kMaxSteps = 24;
+constexpr uint32_t kPoorSad = 2000;  // 8 a sample: from which on the search looks further
 constexpr int kEnoughNeighbors = 2;  // that have the vector
 
 class FastSearch {
@@ -17,7 +18,8 @@ class FastSearch {
     start_still();
     const int agreeing = try_candidates();
     if (best_.sad < options_.good_sad) return best_;
-    const bool moved = walk();
+    if (best_.sad > kPoorSad) walk(8);
+    const bool moved = walk(2);
     if (options_.believes_neighbors && !moved && agreeing >= kEnoughNeighbors) return best_;
     refine();
     return best_;
@@ -60,15 +62,15 @@ class FastSearch {
     return static_cast<int>(std::count(in_.candidates, in_.candidates + in_.n_candidates, best_.vector));
   }
 
-  // Downhill in a diamond of whole samples, without looking back to where it came from.
-  bool walk() {
-    static constexpr int kDx[4] = {2, 0, -2, 0}, kDy[4] = {0, 2, 0, -2};
+  // Downhill in a diamond of that radius (half samples, even), without looking back to where it came from.
+  bool walk(int radius) {
+    static constexpr int kDx[4] = {1, 0, -1, 0}, kDy[4] = {0, 1, 0, -1};
     int came_from = -1;
     for (int step = 0; step < kMaxSteps; ++step) {
       const MotionVector center = best_.vector;
       int moved = -1;
       for (int direction = 0; direction < 4; ++direction) {
-        const int x = center.x_halfpel + kDx[direction], y = center.y_halfpel + kDy[direction];
+        const int x = center.x_halfpel + radius * kDx[direction], y = center.y_halfpel + radius * kDy[direction];
         if (direction != came_from && in_.range.contains(x, y) && try_vector(x, y)) moved = direction;
       }
       if (moved < 0) return step > 0;
