@@ -34,8 +34,8 @@ struct SearchInput {
   const MotionVector* candidates;  // any vectors; clamped here
   int n_candidates;
   const MotionVector* far_vector = nullptr;  // where another search may begin; not in search_fast()
-  uint32_t lambda_q4;                 // cost of a bit in units of SAD / 16
-  const uint8_t* bits_of_difference;  // vector bits by |difference|, indexed 0..kMaxDifference
+  uint32_t lambda_q4;                        // cost of a bit in units of SAD / 16
+  const uint8_t* bits_of_difference;         // vector bits by |difference|, indexed 0..kMaxDifference
 };
 constexpr int kMaxDifference = 4095;
 
