@@ -47,8 +47,8 @@ Result<void> time_renders(const SceneSet& scene, const raster::Camera& camera, c
   }
   if (options.transmit_model) {
     const Stopwatch encode_watch;
-    PAC_TRY(const ScreenModel model,
-            encode_screen_model(frame.low_scene(), camera, out.split.low, high.width(), high.height()));
+    PAC_TRY(const ScreenModel model, encode_screen_model(frame.low_scene(), camera, out.split.low, high.width(),
+                                                         high.height(), options.position_bits));
     out.timings.encode_model = encode_watch.milliseconds();
     const Stopwatch decode_watch;
     PAC_CHECK(geomcodec::decode(model.bytes));
@@ -107,12 +107,25 @@ Result<RenderOptions> with_defaults(RenderOptions options, const SceneSet& scene
 }
 
 // What the same tables cost with Huffman codes made for the picture: the standard ones hide half of the gain.
-Result<uint64_t> optimal_huffman_size(const Renderings& renderings, ArmKind kind, double quality,
-                                      CodingOptions options) {
+Result<void> measure_optimal_huffman(const Renderings& renderings, ArmKind kind, CodingOptions options, Arm& arm) {
   options.huffman = jpeg::Huffman::optimal;
-  PAC_TRY(const CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality,
-                                                  options, renderings.high.view()));
-  return uint64_t{coded.bytes.size()};
+  PAC_TRY(const CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind),
+                                                  arm.coded.quality, options, renderings.high.view()));
+  arm.optimal_huffman_bytes = coded.bytes.size();
+  return {};
+}
+
+// What a rendering of L says: its picture, D and the model.
+void take_low(FrameImages images, Renderings& out) {
+  out.high = std::move(images.high);
+  out.low = std::move(images.low);
+  out.difference = std::move(images.difference);
+  out.low_entropy = measure_entropies_of(out.low);
+  out.difference_entropy = measure_entropies_of(out.difference);
+  out.visible_low_polygons = images.model.polygons;
+  out.visible_low_vertices = images.model.vertices;
+  out.model_bytes = images.model.bytes.size();
+  out.model_parts = images.model.parts;
 }
 
 }  // namespace
@@ -132,20 +145,14 @@ Result<Renderings> render_split(const SceneSet& scene, const raster::Camera& cam
   PAC_TRY(out.split, make_split(options.split, scene, {options.samples}));
   PAC_TRY(FrameRenderer frame, FrameRenderer::create(scene, out.split, options.transmit_model, options.width,
                                                      options.height, options.threads, options.isa));
+  frame.set_position_bits(options.position_bits);
   PAC_TRY(FrameImages images, frame.render(scene, camera));
-  out.high = std::move(images.high);
-  out.low = std::move(images.low);
-  out.difference = std::move(images.difference);
+  take_low(std::move(images), out);
   out.high_entropy = measure_entropies_of(out.high);
-  out.low_entropy = measure_entropies_of(out.low);
-  out.difference_entropy = measure_entropies_of(out.difference);
   out.high_polygons = high_polygon_count(scene);
   out.low_polygons = low_polygon_count(scene, out.split);
-  out.visible_low_polygons = images.model.polygons;
-  out.visible_low_vertices = images.model.vertices;
   out.model_transmitted = options.transmit_model;
-  out.model_bytes = images.model.bytes.size();
-  out.model_parts = images.model.parts;
+  out.position_bits = options.transmit_model ? options.position_bits : 0;
   out.estimated_model_bytes = static_cast<double>(out.low_polygons) * 10 / 3;
   out.resident_model_bytes = serialize_model(frame.low_scene(), out.split.low.texture).size();
   if (options.time_renders) PAC_CHECK(time_renders(scene, camera, options, frame, out));
@@ -209,12 +216,73 @@ Result<Still> run_still(const SceneSet& scene, const raster::Camera& camera, con
   }
   PAC_TRY(still.polygon_assisted,
           code_arm_at_size(renderings, ArmKind::polygon_assisted, target, options.coding, &still.timings));
-  PAC_TRY(still.image_based.optimal_huffman_bytes,
-          optimal_huffman_size(renderings, ArmKind::image_based, still.image_based.coded.quality, options.coding));
-  PAC_TRY(still.polygon_assisted.optimal_huffman_bytes,
-          optimal_huffman_size(renderings, ArmKind::polygon_assisted, still.polygon_assisted.coded.quality,
-                               options.coding));
+  PAC_CHECK(measure_optimal_huffman(renderings, ArmKind::image_based, options.coding, still.image_based));
+  PAC_CHECK(measure_optimal_huffman(renderings, ArmKind::polygon_assisted, options.coding, still.polygon_assisted));
   return still;
+}
+
+namespace {
+
+// The assisted arm of `renderings` within the budget, and what it is as a division; false: the model leaves too little.
+Result<bool> code_division(const Renderings& renderings, const StillOptions& options, Arm& arm, Division& division,
+                           Timings& timings) {
+  constexpr uint64_t kFewestImageBytes = 200;  // its headers alone take more
+  if (renderings.model_bytes + kFewestImageBytes > options.target_bytes) return false;
+  const uint64_t image_target = options.target_bytes - renderings.model_bytes;
+  PAC_TRY(arm, code_arm_at_size(renderings, ArmKind::polygon_assisted, image_target, options.coding, &timings));
+  division = {renderings.position_bits, renderings.model_bytes, arm.image_bytes, arm.coded.quality, arm.scores.rms};
+  return arm.image_bytes <= image_target + image_target / 50;  // else no quality is low enough
+}
+
+// Draws L, the model and D of `renderings` at another precision.
+Result<void> redraw_at(int position_bits, const raster::Camera& camera, FrameRenderer& frame, Renderings& renderings) {
+  FrameImages images;
+  images.high = std::move(renderings.high);
+  images.low = std::move(renderings.low);
+  images.difference = std::move(renderings.difference);
+  frame.set_position_bits(position_bits);
+  PAC_CHECK(frame.redraw_low(camera, images));
+  take_low(std::move(images), renderings);
+  renderings.position_bits = position_bits;
+  return {};
+}
+
+}  // namespace
+
+Result<DividedStill> divide_budget(const SceneSet& scene, const raster::Camera& camera, const StillOptions& given) {
+  if (given.target_bytes == 0) return Failure{Error::bad_argument, 0, "no byte budget to divide"};
+  StillOptions options = given;
+  PAC_TRY(options.render, with_defaults(given.render, scene));
+  options.render.transmit_model = true;
+  options.render.position_bits = kMostPositionBits;
+  DividedStill out;
+  Still& still = out.still;
+  PAC_TRY(still.renderings, render_split(scene, camera, options.render));
+  Renderings& renderings = still.renderings;
+  still.timings = renderings.timings;
+  PAC_TRY(still.image_based,
+          code_arm_at_size(renderings, ArmKind::image_based, options.target_bytes, options.coding, &still.timings));
+  PAC_TRY(FrameRenderer frame,
+          FrameRenderer::create(scene, renderings.split, true, options.render.width, options.render.height,
+                                options.render.threads, options.render.isa));
+  int best_bits = 0;
+  for (int bits = kFewestPositionBits; bits <= kMostPositionBits; ++bits) {
+    PAC_CHECK(redraw_at(bits, camera, frame, renderings));
+    Arm arm;
+    Division division;
+    PAC_TRY(const bool fits, code_division(renderings, options, arm, division, still.timings));
+    if (!fits) continue;
+    out.divisions.push_back(division);
+    if (best_bits != 0 && arm.scores.rms >= still.polygon_assisted.scores.rms) continue;
+    still.polygon_assisted = std::move(arm);
+    best_bits = bits;
+  }
+  if (best_bits == 0)
+    return Failure{Error::limit_exceeded, 0, "the transmitted model leaves no bytes for an image at any precision"};
+  PAC_CHECK(redraw_at(best_bits, camera, frame, renderings));
+  PAC_CHECK(measure_optimal_huffman(renderings, ArmKind::image_based, options.coding, still.image_based));
+  PAC_CHECK(measure_optimal_huffman(renderings, ArmKind::polygon_assisted, options.coding, still.polygon_assisted));
+  return out;
 }
 
 }  // namespace pac::sim

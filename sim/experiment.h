@@ -48,6 +48,7 @@ struct RenderOptions {
   int width = 0, height = 0;  // 0 = the scene's own
   int samples = 16;
   bool transmit_model = false;  // L is drawn from the decoded screen-space model
+  int position_bits = 16;       // of that model, 1..16
   bool time_renders = false;    // also render H and L alone, for Timings
   int threads = 1;              // 0 = all
   Isa isa = best_isa();
@@ -63,6 +64,7 @@ struct Renderings {
   uint64_t visible_low_vertices = 0;
   bool model_transmitted = false;
   uint64_t model_bytes = 0;            // a frame: 0 where resident
+  int position_bits = 0;               // of that model; 0 where resident
   geomcodec::EncodedSize model_parts;  // of model_bytes
   double estimated_model_bytes = 0;    // the paper's estimate: 10/3 bytes a polygon of the low model
   uint64_t resident_model_bytes = 0;   // the session message's model, once
@@ -111,9 +113,28 @@ struct Still {
   Timings timings;  // all fields
 };
 
+// One way to divide a byte budget between the transmitted model's positions and the image.
+struct Division {
+  int position_bits = 0;
+  uint64_t model_bytes = 0, image_bytes = 0;
+  double image_quality = 0, rms = 0;  // of the difference's JPEG; of the composite against H
+};
+// Precisions that divide_budget() tries: below, vertices lie pixels apart; 16 is what the paper sends.
+constexpr int kFewestPositionBits = 8, kMostPositionBits = 16;
+
 // Fails with bad_argument for quality out of range, and as the functions above. With charge_model: limit_exceeded
 // where the model alone is larger than the size.
 Result<Still> run_still(const SceneSet& scene, const raster::Camera& camera, const StillOptions& options);
+
+struct DividedStill {
+  Still still;                      // at the best division: the least rms, of equals the coarser model
+  std::vector<Division> divisions;  // all that fit the budget, by position bits
+};
+
+// A transmitted model and an image that take target_bytes together, divided so that the composite is nearest to H; the
+// image-based arm gets the same bytes. transmit_model, charge_model and position_bits of `options` are taken as said.
+// Fails as run_still; bad_argument without target_bytes, limit_exceeded where no division fits.
+Result<DividedStill> divide_budget(const SceneSet& scene, const raster::Camera& camera, const StillOptions& options);
 
 // Row F of Table I: the same still with the model transmitted. D is coded at `difference_quality` (row E's), and the
 // image-based arm at the size of D and model together, so that the two can be compared ("even in this case", s.4.1).

@@ -76,9 +76,14 @@ Result<FrameImages> FrameRenderer::render(const SceneSet& scene, const raster::C
     return images;
   }
   PAC_CHECK(renderer_.render(scene.fine, camera, split_.high, high));
+  PAC_CHECK(redraw_low(camera, images));
+  return images;
+}
+
+Result<void> FrameRenderer::redraw_low(const raster::Camera& camera, FrameImages& images) {
   PAC_CHECK(draw_low(camera, images));
   difference_image(images.high.view(), images.low.view(), images.difference.view(), isa_);
-  return images;
+  return {};
 }
 
 Result<void> FrameRenderer::draw_low(const raster::Camera& camera, FrameImages& images) {
@@ -88,12 +93,12 @@ Result<void> FrameRenderer::draw_low(const raster::Camera& camera, FrameImages& 
     return {};
   }
   if (low_scene_.objects.empty()) {
-    PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_));
+    PAC_TRY(images.model, encode_screen_model(low_scene_, camera, split_.low, width_, height_, position_bits_));
   } else {
     raster::Scene posed = low_scene_;
     PAC_CHECK(raster::pose_mesh(low_scene_, posed.mesh));
     posed.objects.clear();
-    PAC_TRY(images.model, encode_screen_model(posed, camera, split_.low, width_, height_));
+    PAC_TRY(images.model, encode_screen_model(posed, camera, split_.low, width_, height_, position_bits_));
   }
   return draw_screen_model(renderer_, images.model.bytes, split_.low, low_scene_.background, images.low.view());
 }

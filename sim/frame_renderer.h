@@ -34,6 +34,11 @@ class FrameRenderer {
   // with_geometry: depth and ids of L as well (resident models only).
   Result<FrameImages> render(const SceneSet& scene, const raster::Camera& camera, bool with_geometry = false);
 
+  // Of models transmitted from now on, 1..16 (16).
+  void set_position_bits(int bits) { position_bits_ = bits; }
+  // L, the model and D once more, against the H that `images` holds from render(): after set_position_bits().
+  Result<void> redraw_low(const raster::Camera& camera, FrameImages& images);
+
   // Its objects are where create() or the last render() found those of the fine model.
   const raster::Scene& low_scene() const { return low_scene_; }
   raster::Renderer& renderer() { return renderer_; }
@@ -48,7 +53,7 @@ class FrameRenderer {
   Split split_;
   raster::Scene low_scene_;  // what the client has
   bool transmit_model_;
-  int width_, height_;
+  int width_, height_, position_bits_ = 16;
   Isa isa_;
 };
 

@@ -15,8 +15,6 @@ namespace pac::sim {
 
 namespace {
 
-constexpr int kGridMax = 65535;  // two bytes a coordinate
-
 // A corner on its way through the clipper: homogeneous clip coordinates and color 0..255, perspective-correct because
 // both are linear in clip space.
 struct ClipCorner {
@@ -193,20 +191,25 @@ Result<WindowPolygons> visible_polygons(const raster::Scene& scene, const raster
   return clipper.result();
 }
 
+double highest_of(int bits) {
+  return (1 << bits) - 1;
+}
+
 // 1/16 pixel in x and y, the rasterizer's order of magnitude, or the next power of two that still spans the window; in
-// z the whole range of two bytes over the depths that occur.
-geomcodec::Grid choose_grid(const std::vector<WindowCorner>& corners, int width, int height) {
+// z the whole range of `bits` over the depths that occur.
+geomcodec::Grid choose_grid(const std::vector<WindowCorner>& corners, int width, int height, int bits) {
   float step = 0.0625f;
-  while (static_cast<double>(step) * kGridMax < std::max(width, height)) step *= 2;
+  while (static_cast<double>(step) * highest_of(bits) < std::max(width, height)) step *= 2;
   double low = 1, high = 0;
   for (const WindowCorner& corner : corners) {
     low = std::min(low, corner.position[2]);
     high = std::max(high, corner.position[2]);
   }
   geomcodec::Grid grid;
+  grid.bits = bits;
   grid.step[0] = grid.step[1] = step;
   grid.origin[2] = high > low ? static_cast<float>(low) : 0.0f;
-  grid.step[2] = high > low ? static_cast<float>((high - low) / kGridMax) : 1.0f;
+  grid.step[2] = high > low ? static_cast<float>((high - low) / highest_of(bits)) : 1.0f;
   return grid;
 }
 
@@ -214,7 +217,7 @@ geomcodec::QuantizedVertex quantize_corner(const WindowCorner& corner, const geo
   geomcodec::QuantizedVertex vertex;
   for (int axis = 0; axis < 3; ++axis) {
     const double steps = (corner.position[axis] - double{grid.origin[axis]}) / double{grid.step[axis]};
-    vertex.position[axis] = static_cast<uint16_t>(std::clamp(std::floor(steps + 0.5), 0.0, double{kGridMax}));
+    vertex.position[axis] = static_cast<uint16_t>(std::clamp(std::floor(steps + 0.5), 0.0, highest_of(grid.bits)));
   }
   for (int i = 0; i < 3; ++i)
     vertex.color[i] = static_cast<uint8_t>(std::clamp(std::floor(corner.color[i] + 0.5), 0.0, 255.0));
@@ -311,10 +314,13 @@ raster::Camera window_camera(int width, int height) {
 }  // namespace
 
 Result<ScreenModel> encode_screen_model(const raster::Scene& scene, const raster::Camera& camera,
-                                        const raster::RenderQuality& quality, int width, int height) {
+                                        const raster::RenderQuality& quality, int width, int height,
+                                        int position_bits) {
+  if (position_bits < 1 || position_bits > 16) return Failure{Error::bad_argument, 0, "position bits must be in 1..16"};
   PAC_CHECK(validate(scene.mesh, static_cast<uint32_t>(scene.materials.size())));
   PAC_TRY(const WindowPolygons polygons, visible_polygons(scene, camera, quality, width, height));
-  geomcodec::QuantizedMesh mesh = quantize_polygons(polygons, choose_grid(polygons.corners, width, height));
+  geomcodec::QuantizedMesh mesh =
+      quantize_polygons(polygons, choose_grid(polygons.corners, width, height, position_bits));
   drop_unused_vertices(mesh);
   ScreenModel model;
   model.polygons = mesh.faces.size();

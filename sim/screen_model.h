@@ -26,10 +26,11 @@ struct ScreenModel {
 };
 
 // Clips `scene` against the six planes of the view, lights its vertices (Gouraud, untextured: mean colors), quantizes
-// to 16 bits a coordinate and encodes. The scene is one that low_scene made. Fails as geomcodec::encode and
-// Renderer::render.
+// to position_bits (1..16) a coordinate and encodes. The scene is one that low_scene made. Fails as geomcodec::encode
+// and Renderer::render; bad_argument for other position_bits.
 Result<ScreenModel> encode_screen_model(const raster::Scene& scene, const raster::Camera& camera,
-                                        const raster::RenderQuality& quality, int width, int height);
+                                        const raster::RenderQuality& quality, int width, int height,
+                                        int position_bits = 16);
 
 // Decodes such a stream and draws it: L as both sides see it. `low` has the renderer's size. Fails as
 // geomcodec::decode; corrupt where a face names a material other than 0.

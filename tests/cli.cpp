@@ -404,9 +404,16 @@ TEST_CASE("compare matches both arms' bytes and writes a page of its own") {
     CHECK(still.contains(key));
   CHECK(contains(folder.read("page/index.html"), "</html>"));
   CHECK(folder.exists("page/still-polygon.png"));
-  const auto sized = json(folder.pac(compare + "--bytes 1500 --tables adapted --huffman optimal --model transmitted"));
+  const std::string sent = compare + "--bytes 1500 --tables adapted --huffman optimal --model transmitted";
+  const auto sized = json(folder.pac(sent));
   CHECK(number(sized, "image_based.bytes") == doctest::Approx(1500).epsilon(0.02));
+  CHECK(number(sized, "polygon_assisted.bytes") == doctest::Approx(1500).epsilon(0.02));
   CHECK(number(sized, "polygon_assisted.model_bytes") > 0);
+  CHECK(sized.at("divisions").size() > 1);
+  const auto at_16_bits = json(folder.pac(sent + " --position-bits 16"));
+  CHECK(number(at_16_bits, "model.position_bits") == 16);
+  CHECK(number(sized, "polygon_assisted.rms") <= number(at_16_bits, "polygon_assisted.rms"));
+  check_usage_error(folder.pac(compare + "--position-bits 12"), "--model transmitted");
   CHECK(json(folder.pac(compare + "--split antialiasing")).at("split") == "antialiasing");
   CHECK(folder.pac(compare + "--split lightning").code == 1);
   check_usage_error(folder.pac("compare letter --bytes 1500 -q 3"), "leave --quality out");

@@ -84,6 +84,43 @@ TEST_CASE("a wanted size binds both arms; charging the model takes it from the a
   CHECK(impossible.failure().error == Error::limit_exceeded);
 }
 
+TEST_CASE("a byte budget is divided between the model's positions and the image so that the composite is best") {
+  sim::StillOptions options = still_options();
+  options.target_bytes = 2500;
+  const auto divided = sim::divide_budget(scene(), test::small_camera(0, 1), options);
+  REQUIRE(divided.ok());
+  const sim::Still& still = divided->still;
+  REQUIRE(divided->divisions.size() >= 3);
+  CHECK(still.renderings.model_transmitted);
+  CHECK(still.polygon_assisted.total_bytes <= 2550);
+  CHECK(std::llabs(static_cast<long long>(still.image_based.total_bytes) - 2500) <= 25);
+  int last_bits = 0;
+  for (const sim::Division& division : divided->divisions) {
+    CAPTURE(division.position_bits);
+    CHECK(division.position_bits > last_bits);
+    CHECK(division.model_bytes + division.image_bytes <= 2550);
+    CHECK(still.polygon_assisted.scores.rms <= division.rms);
+    last_bits = division.position_bits;
+  }
+  CHECK(divided->divisions.front().model_bytes < divided->divisions.back().model_bytes);
+  // The division chosen is what a still of that precision comes to.
+  options.render.transmit_model = options.charge_model = true;
+  options.render.position_bits = still.renderings.position_bits;
+  const sim::Still again = run(options);
+  CHECK(again.renderings.model_bytes == still.renderings.model_bytes);
+  CHECK(again.polygon_assisted.coded.bytes == still.polygon_assisted.coded.bytes);
+  CHECK(sim::image_hash(again.polygon_assisted.shown.view()) == sim::image_hash(still.polygon_assisted.shown.view()));
+}
+
+TEST_CASE("no budget, and one that the model alone exceeds, are refused") {
+  sim::StillOptions options = still_options();
+  CHECK(sim::divide_budget(scene(), test::small_camera(0, 1), options).failure().error == Error::bad_argument);
+  options.target_bytes = 40;
+  const auto divided = sim::divide_budget(scene(), test::small_camera(0, 1), options);
+  REQUIRE(!divided.ok());
+  CHECK(divided.failure().error == Error::limit_exceeded);
+}
+
 TEST_CASE("one traversal and two give the same H, L and D") {
   // tessellation,texture cannot share a traversal; with the fine model as its own coarse one it draws the same
   // pictures.

@@ -32,9 +32,12 @@ void declare(Options& options, Request& request) {
                "texture, tessellation, shading, antialiasing, lighting, or several joined by commas (the scene's own)");
   options.real("-q|--quality", "Q", request.still.quality, 0.01, 100,
                "of the image-based arm; the other is matched to its bytes (15)");
-  options.integer("--bytes", "N", request.bytes, 1, 2147483647, "match both arms to this size instead");
+  options.integer("--bytes", "N", request.bytes, 1, 2147483647,
+                  "match both arms to this size instead, a transmitted model included");
   options.choice<bool>("--model", render.transmit_model, {{"resident", false}, {"transmitted", true}},
                        "transmitted: its bytes count, and L is drawn from the decoded model (resident)");
+  options.integer("--position-bits", "N", render.position_bits, 1, 16,
+                  "of the transmitted model (16; with --bytes what divides them best between model and image)");
   options.choice<TableFamily>("--tables", coding.tables,
                               {{"annex-k", TableFamily::annex_k}, {"adapted", TableFamily::adapted}},
                               "quantization tables of both arms (annex-k)");
@@ -87,7 +90,22 @@ void json_entropies(sim::JsonWriter& json, const char* name, const sim::Entropie
   json.end_object();
 }
 
-int print_as_json(const std::string& scene, const sim::Still& still) {
+void json_divisions(sim::JsonWriter& json, const std::vector<sim::Division>& divisions) {
+  json.begin_array("divisions");
+  for (const sim::Division& division : divisions) {
+    json.begin_object();
+    json.field("position_bits", division.position_bits);
+    json.field("model_bytes", division.model_bytes);
+    json.field("image_bytes", division.image_bytes);
+    json.field("quality", division.image_quality);
+    json.field("rms", division.rms);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+int print_as_json(const std::string& scene, const sim::DividedStill& divided) {
+  const sim::Still& still = divided.still;
   const sim::Renderings& renderings = still.renderings;
   sim::JsonWriter json;
   json.begin_object();
@@ -106,14 +124,24 @@ int print_as_json(const std::string& scene, const sim::Still& still) {
   json.begin_object("model");
   json.field("transmitted", renderings.model_transmitted);
   json.field("bytes", renderings.model_bytes);
+  if (renderings.model_transmitted) json.field("position_bits", renderings.position_bits);
   json.field("estimated_bytes", renderings.estimated_model_bytes);
   json.field("visible_polygons", renderings.visible_low_polygons);
   json.field("resident_bytes", renderings.resident_model_bytes);
   json.end_object();
+  if (!divided.divisions.empty()) json_divisions(json, divided.divisions);
   json_arm(json, "image_based", still.image_based, renderings.high);
   json_arm(json, "polygon_assisted", still.polygon_assisted, renderings.high);
   json.end_object();
   return print_json(json);
+}
+
+void print_divisions(const std::vector<sim::Division>& divisions) {
+  if (divisions.empty()) return;
+  std::printf("\n%-14s %12s %12s %12s %8s\n", "position bits", "model bytes", "image bytes", "JPEG quality", "rms");
+  for (const sim::Division& division : divisions)
+    std::printf("%-14d %12s %12s %12.1f %8.2f\n", division.position_bits, grouped(division.model_bytes).c_str(),
+                grouped(division.image_bytes).c_str(), division.image_quality, division.rms);
 }
 
 void print_text(const std::string& scene, const sim::Still& still) {
@@ -132,12 +160,25 @@ void print_text(const std::string& scene, const sim::Still& still) {
   row("  division by two undone", image.coded.equivalent_quality, polygon.coded.equivalent_quality, 1);
   std::printf("%-26s %14s %18s\n", "bytes", grouped(image.total_bytes).c_str(), grouped(polygon.total_bytes).c_str());
   if (polygon.model_bytes > 0)
-    std::printf("%-26s %14s %18s\n", "  of it the model", "", grouped(polygon.model_bytes).c_str());
+    std::printf("%-26s %14s %18s\n",
+                ("  of it the model, " + std::to_string(renderings.position_bits) + " bits").c_str(), "",
+                grouped(polygon.model_bytes).c_str());
   row("compression ratio (:1)", image.compression_ratio, polygon.compression_ratio, 1);
   row("% of 2 Mb/s at 20/s", 100 * image.budget_share, 100 * polygon.budget_share, 0);
   row("rms", image.scores.rms, polygon.scores.rms, 2);
   row("PSNR (dB)", image.scores.psnr_db, polygon.scores.psnr_db, 2);
   row("SSIM", image.scores.ssim, polygon.scores.ssim, 4);
+}
+
+// Both arms; where a transmitted model shares --bytes with the image, at the best division unless the bits are given.
+Result<sim::DividedStill> run(const sim::SceneSet& scene, const raster::Camera& camera, sim::StillOptions options,
+                              bool bits_given) {
+  const bool shares = options.render.transmit_model && options.target_bytes > 0;
+  if (shares && !bits_given) return sim::divide_budget(scene, camera, options);
+  options.charge_model = shares;
+  sim::DividedStill result;
+  PAC_TRY(result.still, sim::run_still(scene, camera, options));
+  return result;
 }
 
 // The command line that makes the page again.
@@ -157,6 +198,8 @@ int run_compare(Args args) {
   if (const auto code = options.parse(args)) return *code;
   if (options.given("--bytes") && options.given("--quality"))
     return options.usage_error("--bytes chooses the quality itself: leave --quality out");
+  if (options.given("--position-bits") && !request.still.render.transmit_model)
+    return options.usage_error("--position-bits is of a transmitted model: add --model transmitted");
   if (request.still.coding.masking != jpeg::Tune::psnr && request.still.coding.tables != sim::TableFamily::adapted)
     return options.usage_error("--masking goes with --tables adapted");
   auto source = load_scene(request.scene, options);
@@ -170,14 +213,17 @@ int run_compare(Args args) {
   const auto size = [](int given, int own) { return static_cast<float>(given > 0 ? given : own); };
   const float aspect =
       size(request.still.render.width, source->set.width) / size(request.still.render.height, source->set.height);
-  const auto still = sim::run_still(source->set, source->camera(request.frame, aspect), request.still);
-  if (!still.ok()) return data_error(request.scene, still.failure());
+  const auto divided =
+      run(source->set, source->camera(request.frame, aspect), request.still, options.given("--position-bits"));
+  if (!divided.ok()) return data_error(request.scene, divided.failure());
+  const sim::Still& still = divided->still;
   if (!request.out.empty()) {
-    const auto page = sim::compare_report(source->name.substr(source->name.rfind('/') + 1), *still, command_line(args));
+    const auto page = sim::compare_report(source->name.substr(source->name.rfind('/') + 1), still, command_line(args));
     if (const int code = write_report(request.out, page, options); code != kDone) return code;
   }
-  if (options.json) return print_as_json(source->name, *still);
-  print_text(source->name, *still);
+  if (options.json) return print_as_json(source->name, *divided);
+  print_text(source->name, still);
+  print_divisions(divided->divisions);
   if (!request.out.empty() && !options.quiet) std::fprintf(stderr, "\nlook at %s/index.html\n", request.out.c_str());
   return kDone;
 }
