@@ -42,10 +42,10 @@ class ColorCoder {
     ComponentModel channel[4];
     explicit Models(bool trained) {
       for (size_t basis = 0; trained && basis < kAttributeBases; ++basis)
-        for (const size_t c : {0, 1, 2})
+        for (const size_t c : {size_t{0}, size_t{1}, size_t{2}})
           channel[c].classes[basis].start_from(
               kPriorModels[(c == 1 ? kPriorGreen : kPriorRedBlue) + kPriorOfAttributeBasis[basis]]);
-      for (const size_t c : {0, 1, 2})
+      for (const size_t c : {size_t{0}, size_t{1}, size_t{2}})
         if (trained) std::fill_n(channel[c].details, 3, kPriorDetails[c == 1 ? kDetailsOfGreen : kDetailsOfRedBlue]);
     }
   };
