@@ -32,6 +32,31 @@ CornerNormal seen_normal(const Vertex& vertex, const FaceNormal& face, bool fron
   return own ? n : CornerNormal{-n.x, -n.y, -n.z};
 }
 
+// seen_normal() would keep the vertex's own normal whatever rounding does to the face's unit normal: the cosine between
+// them is far more than the few 2^-24 by which either sum is off.
+bool is_on_seen_side(const CornerNormal& n, const FaceNormal& face, bool front) {
+  const float x = n.x * face.x, y = n.y * face.y, z = n.z * face.z;
+  const float along = front ? (x + y) + z : -((x + y) + z);
+  const float magnitude = (std::fabs(x) + std::fabs(y)) + std::fabs(z);
+  return magnitude <= 0x1p100f && along >= 0x1p-80f && along >= 0x1p-16f * magnitude;  // false for NaN
+}
+
+// The normals of the corners on the side that is seen; the face's unit normal is computed only where it decides.
+// True if all are the vertices' own.
+bool seen_normals(const Vertex* const vertices[3], const FaceNormal& face, bool front, CornerNormal normals[3]) {
+  bool has_unit = false, all_own = true;
+  FaceNormal unit{};
+  for (int i = 0; i < 3; ++i) {
+    if (usable_normal(*vertices[i], normals[i]) && is_on_seen_side(normals[i], face, front)) continue;
+    if (!has_unit) unit = unit_normal(face);
+    has_unit = true;
+    bool own;
+    normals[i] = seen_normal(*vertices[i], unit, front, own);
+    all_own = all_own && own;
+  }
+  return all_own;
+}
+
 // Texture coordinates. Repeating ones are moved by whole periods so that the smallest lies in [0, 1): more digits for
 // what is left.
 void set_uv(const Surface& surface, const Vertex* const vertices[3], CornerAttributes& out) {
@@ -147,21 +172,19 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
     set_vertex_colors(surface, vertices, out);
     return;
   }
-  const float side = front ? 1.0f : -1.0f;
-  const CornerNormal flat{face.x * side, face.y * side, face.z * side};
-  CornerNormal normals[3] = {flat, flat, flat};
+  CornerNormal normals[3];
   float lit[3][6];
   if (surface.lit == Surface::Lit::per_face) {
+    const float side = front ? 1.0f : -1.0f;
+    const FaceNormal unit = unit_normal(face);
+    const CornerNormal flat{unit.x * side, unit.y * side, unit.z * side};
+    std::fill_n(normals, 3, flat);
     const LitPoint point{flat, &first};
     light_points(surface, kernels, 1, &point, lit);
     for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, lit[0], out);
   } else {
-    bool all_cached = true;
-    for (int i = 0; i < 3; ++i) {
-      bool own;
-      normals[i] = seen_normal(*vertices[i], face, front, own);
-      all_cached = all_cached && own && cached[i] != nullptr;
-    }
+    const bool all_own = seen_normals(vertices, face, front, normals);
+    const bool all_cached = all_own && cached[0] != nullptr && cached[1] != nullptr && cached[2] != nullptr;
     if (surface.lit == Surface::Lit::per_sample) {
       set_vertex_colors(surface, vertices, out);
     } else {

@@ -29,9 +29,9 @@ struct LitPoint {
 };
 void light_points(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]);
 
-// `normal` is the face's unit normal, `vertices` the triangle's corners, `first` the face's first corner. `front`: the
-// front is seen; normals on the far side of the face are turned toward the viewer, so that lighting is two-sided.
-// cached[i]: what light_points() gives corner i by its own normal, or null.
+// `normal` is the face's normal of any length, `vertices` the triangle's corners, `first` the face's first corner.
+// `front`: the front is seen; normals on the far side of the face are turned toward the viewer, so that lighting is
+// two-sided. cached[i]: what light_points() gives corner i by its own normal, or null.
 void corner_attributes(const Surface& surface, const TileKernels& kernels, const FaceNormal& normal,
                        const Vertex* const vertices[3], const float* const cached[3], const Vertex& first, bool front,
                        CornerAttributes& out);

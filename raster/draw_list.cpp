@@ -76,6 +76,7 @@ void attach_attributes(const FrameInput& input, const Candidate& candidate, cons
     if (candidate.surfaces[r] == nullptr) continue;
     const Surface& surface = *candidate.surfaces[r];
     triangle.state[r] = surface.batch;
+    if (!input.wants_attributes) continue;
     if (corners == nullptr && surface.lit == Surface::Lit::no && surface.layout.count == 3) {
       float* record = arena.allocate(9);
       write_color_record(surface, candidate.vertices, order, record);
@@ -123,7 +124,7 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
   tiles_y_ = (input.viewport.height + kTileSize - 1) / kTileSize;
   transform(input, pool);
   for (int r = 0; r < 2; ++r)
-    if (input.surfaces[r] != nullptr)
+    if (input.surfaces[r] != nullptr && input.wants_attributes)
       lit_[r].prepare(*input.mesh, *input.surfaces[r], input.kernels->tile, outcodes_.data(), pool);
 
   // Chunks only divide the work: triangles keep the order of the scene whatever their number.
@@ -206,23 +207,22 @@ void DrawList::fill_candidate(const FrameInput& input, uint32_t face_number, con
   out.first = &mesh.vertices[mesh.indices[face.first]];
   out.id = face_number + 1;
   out.normal = {0, 0, 0};
-  bool needs_normal = false;
   for (int i = 0; i < 3; ++i) out.vertices[i] = &mesh.vertices[vertices[i]];
   for (int r = 0; r < 2; ++r) {
     out.surfaces[r] = nullptr;
     if (input.surfaces[r] == nullptr) continue;
     out.surfaces[r] = &(*input.surfaces[r])[face.material];
-    needs_normal = needs_normal || out.surfaces[r]->lit != Surface::Lit::no;
+    if (!input.wants_attributes) continue;
+    if (out.surfaces[r]->lit != Surface::Lit::no) out.normal = normal_of(mesh, face_number, chunk);
     for (int i = 0; i < 3; ++i) out.lit[r][i] = lit_[r].find(vertices[i], face.material);
   }
-  if (needs_normal) out.normal = unit_normal_of(mesh, face_number, chunk);
   for (int i = 0; i < 3; ++i)
     out.previous[i] = input.previous_clip != nullptr ? input.previous_clip + 4 * size_t{vertices[i]} : nullptr;
 }
 
-const FaceNormal& DrawList::unit_normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const {
+const FaceNormal& DrawList::normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const {
   if (chunk.normal_of != face_number) {
-    chunk.normal = unit_normal(face_normal(mesh, mesh.faces[face_number]));
+    chunk.normal = face_normal(mesh, mesh.faces[face_number]);
     chunk.normal_of = face_number;
   }
   return chunk.normal;

@@ -50,7 +50,8 @@ struct FrameInput {
   Viewport viewport;
   SampleHull hull;
   const std::vector<Surface>* surfaces[2];
-  const float* previous_clip;  // four a vertex, or null where nobody asks where things were
+  const float* previous_clip;    // four a vertex, or null where nobody asks where things were
+  bool wants_attributes = true;  // false: nothing is shaded, and attributes[0] and [1] stay null
 };
 
 // A triangle that survived the trivial rejections, with what its face contributes.
@@ -59,7 +60,7 @@ struct Candidate {
   const Vertex* vertices[3];
   const float* lit[2][3];  // colors of the vertices where they were lit before, or null
   const Vertex* first;
-  FaceNormal normal;  // of unit length
+  FaceNormal normal;  // of the face, where something is lit
   uint32_t id;
   const float* previous[3];  // clip coordinates in the previous frame, if wanted
 };
@@ -97,7 +98,7 @@ class DrawList {
     std::vector<uint32_t> bin_start;          // per tile, and one past the end: where its part of `bins` starts
     std::vector<const RasterTriangle*> bins;  // by tile, in order
     PolygonCutter cutter;
-    uint32_t normal_of = UINT32_MAX;  // the face whose unit normal is in `normal`
+    uint32_t normal_of = UINT32_MAX;  // the face whose normal is in `normal`
     FaceNormal normal{};
     RenderStats stats;
     Result<void> result;
@@ -115,7 +116,7 @@ class DrawList {
                       Candidate& out) const;
   void fill_bins(Chunk& chunk) const;
 
-  const FaceNormal& unit_normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
+  const FaceNormal& normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
 
   ScreenTransform transform_{};
   SetupRules rules_{};

@@ -22,6 +22,10 @@ struct Batch {
 }  // namespace
 
 void LitVertices::assign_materials(const Mesh& mesh, const std::vector<Surface>& surfaces) {
+  if (surfaces.size() == 1) {  // vertices of no face too: lit for nothing, but without a walk over the faces
+    materials_.assign(mesh.vertices.size(), 0);
+    return;
+  }
   materials_.assign(mesh.vertices.size(), kNone);
   const size_t n_indices = mesh.indices.size();
   const auto n_vertices = static_cast<uint32_t>(materials_.size());

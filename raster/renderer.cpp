@@ -140,9 +140,16 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
   }
   if (width == 0 || height == 0) return RenderStats{};
   PAC_TRY(const Mesh* const mesh, pose(scene));
-  FrameInput frame{
-      &scene, mesh, &camera, kernels, make_viewport(width, height), sample_hull(input.pattern), {nullptr, nullptr},
-      nullptr};
+  const bool is_shaded = !input.color[0].empty() || !input.color[1].empty() || !input.difference.empty();
+  FrameInput frame{&scene,
+                   mesh,
+                   &camera,
+                   kernels,
+                   make_viewport(width, height),
+                   sample_hull(input.pattern),
+                   {nullptr, nullptr},
+                   nullptr,
+                   is_shaded || input.has_transparent};
   if (!input.previous.empty()) {
     previous_clip_positions(scene, *previous_camera, pool, previous_clip);
     frame.previous_clip = previous_clip.data();

@@ -184,6 +184,8 @@ Result<void> ShadowMaps::draw(const Scene& scene, const Mesh& mesh, int side, co
     PAC_CHECK(prepare_depth_surfaces(scene, surfaces_));
     PaintInput input{};
     input.pattern = sample_pattern(1);
+    const bool has_masks = std::any_of(surfaces_.begin(), surfaces_.end(),
+                                       [](const Surface& surface) { return surface.alpha != AlphaMode::opaque; });
     const FrameInput frame{&scene,
                            &mesh,
                            &camera,
@@ -191,7 +193,8 @@ Result<void> ShadowMaps::draw(const Scene& scene, const Mesh& mesh, int side, co
                            make_viewport(texels, texels),
                            sample_hull(input.pattern),
                            {&surfaces_, nullptr},
-                           nullptr};
+                           nullptr,
+                           has_masks};
     const auto stats = draw_list_.build(frame, pool);
     if (!stats.ok()) return stats.failure();
     depths_[i].resize(static_cast<size_t>(texels) * static_cast<size_t>(texels));

@@ -5,12 +5,25 @@
 #include <cmath>
 
 namespace pac::raster {
+namespace {
+
+// Lanes in a mask of eight; base code may not count on the instruction for it.
+struct LaneCounts {
+  uint8_t of[256] = {};
+  constexpr LaneCounts() {
+    for (unsigned mask = 1; mask < 256; ++mask) of[mask] = static_cast<uint8_t>(of[mask >> 1] + (mask & 1));
+  }
+};
+constexpr LaneCounts kLanes;
+
+}  // namespace
 
 void TilePainter::paint(const PaintInput& input, int tile) {
   const int tile_x = tile % input.draw_list->tiles_x(), tile_y = tile / input.draw_list->tiles_x();
   const Area area{tile_x * kTileSize, tile_y * kTileSize, std::min(kTileSize, input.width - tile_x * kTileSize),
                   std::min(kTileSize, input.height - tile_y * kTileSize)};
   input.draw_list->triangles_of(tile, triangles_);
+  if (triangles_.empty()) return write_background(input, area);
   find_transparent(input);
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
   const size_t n_samples = input.pattern.size();
@@ -26,7 +39,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   if (!wants_color(input, 0) && !wants_color(input, 1)) return;
   if (n_samples == 1) {
     shade_first_sample(input, area);
-  } else if (!triangles_.empty()) {
+  } else {
     for (size_t first = 0; first < n_samples; first += kGridSamples)
       paint_grid(input, area, input.pattern.subspan(first, std::min<size_t>(kGridSamples, n_samples - first)),
                  static_cast<int>(first));
@@ -219,7 +232,7 @@ void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t
       const LanePack& pack = packs_[i];
       if (pack.triangle->state[pass.rendering] != state) {
         packs_[rest++] = pack;
-      } else if (std::popcount(pack.mask) <= few) {
+      } else if (kLanes.of[pack.mask] <= few) {
         for (unsigned mask = pack.mask; mask != 0; mask &= mask - 1) {
           const int k = std::countr_zero(mask);
           lanes_[n_lanes_++] = {pack.triangle, static_cast<uint8_t>(pack.x + k), pack.y, pack.weight[k]};
@@ -277,6 +290,7 @@ void TilePainter::add_sample(const PaintInput& input, int rendering) {
 }
 
 void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {
+  if (input.depth.empty() && input.id.empty()) return;
   for (int y = 0; y < area.height; ++y) {
     if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth.pixel(area.x, area.y + y));
     if (input.id.empty()) continue;
@@ -288,9 +302,7 @@ void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) 
   }
 }
 
-// Interpolates the previous frame's clip coordinates: they are affine on the triangle, so perspective-correct
-// interpolation and one division give the exact place.
-void TilePainter::write_previous(const PaintInput& input, const Area& area, SamplePosition origin) {
+void TilePainter::clear_previous(const PaintInput& input, const Area& area) {
   for (int y = 0; y < area.height; ++y) {
     float* out = input.previous.pixel(area.x, area.y + y);
     for (int x = 0; x < area.width; ++x, out += 3) {
@@ -298,6 +310,28 @@ void TilePainter::write_previous(const PaintInput& input, const Area& area, Samp
       out[2] = 1.0f;
     }
   }
+}
+
+// A tile that no triangle touches.
+void TilePainter::write_background(const PaintInput& input, const Area& area) {
+  uint8_t row[3 * kTileSize];
+  for (int i = 0; i < 3 * kTileSize; ++i) row[i] = input.background[i % 3];
+  for (int y = 0; y < area.height; ++y) {
+    for (const RgbView& color : input.color)
+      if (!color.empty()) std::copy_n(row, 3 * area.width, color.pixel(area.x, area.y + y));
+    if (!input.difference.empty())
+      input.kernels->pixel.difference_row(row, row, input.difference.pixel(area.x, area.y + y),
+                                          3 * static_cast<size_t>(area.width));
+    if (!input.depth.empty()) std::fill_n(input.depth.pixel(area.x, area.y + y), area.width, 1.0f);
+    if (!input.id.empty()) std::fill_n(input.id.pixel(area.x, area.y + y), area.width, 0u);
+  }
+  if (!input.previous.empty()) clear_previous(input, area);
+}
+
+// Interpolates the previous frame's clip coordinates: they are affine on the triangle, so perspective-correct
+// interpolation and one division give the exact place.
+void TilePainter::write_previous(const PaintInput& input, const Area& area, SamplePosition origin) {
+  clear_previous(input, area);
   const int n = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
   const auto half_width = 0.5f * static_cast<float>(input.width), half_height = 0.5f * static_cast<float>(input.height);
   const float offset_x = static_cast<float>(128 - (origin.x & 255)),
@@ -331,12 +365,13 @@ void TilePainter::write_color(const PaintInput& input, const Area& area) const {
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
   uint8_t rows[2][3 * kTileSize];
   for (int y = 0; y < area.height; ++y) {
+    uint8_t* at[2];
     for (int r = 0; r < n_renderings; ++r) {
-      input.kernels->tile.resolve_row(sums_[r] + y * kTileSize, shift, area.width, rows[r]);
-      if (!input.color[r].empty()) std::copy_n(rows[r], 3 * area.width, input.color[r].pixel(area.x, area.y + y));
+      at[r] = input.color[r].empty() ? rows[r] : input.color[r].pixel(area.x, area.y + y);
+      input.kernels->tile.resolve_row(sums_[r] + y * kTileSize, shift, area.width, at[r]);
     }
     if (!input.difference.empty())
-      input.kernels->pixel.difference_row(rows[0], rows[1], input.difference.pixel(area.x, area.y + y),
+      input.kernels->pixel.difference_row(at[0], at[1], input.difference.pixel(area.x, area.y + y),
                                           3 * static_cast<size_t>(area.width));
   }
 }

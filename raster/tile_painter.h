@@ -68,6 +68,8 @@ class TilePainter {
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
   void write_previous(const PaintInput& input, const Area& area, SamplePosition origin);
   void write_color(const PaintInput& input, const Area& area) const;
+  static void write_background(const PaintInput& input, const Area& area);
+  static void clear_previous(const PaintInput& input, const Area& area);
 
   alignas(64) float depth_[kTilePixels];
   alignas(64) uint32_t ids_[kTilePixels];  // 1 + index into triangles_; 0 = background
