@@ -254,10 +254,10 @@ void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t
 }
 
 // Packs with so many lanes or fewer are taken apart: a lane by itself costs about as much as half a pack's
-// interpolation, and an eighth of everything after it.
+// interpolation, and an eighth of everything after it, which is next to nothing where colors are only interpolated.
 int TilePainter::few_lanes(const Surface& surface) {
   if (!BatchShader::shades_lanes(surface)) return 0;
-  return surface.textured || surface.fogged || surface.lit == Surface::Lit::per_sample ? 4 : 2;
+  return surface.textured || surface.fogged || surface.lit == Surface::Lit::per_sample ? 4 : 1;
 }
 
 void TilePainter::shade_lanes(const PaintInput& input, const Surface& surface, const ShadePass& pass, uint16_t* sums) {
