@@ -347,6 +347,7 @@ int main(int argc, char** argv) {
       {"pin 3k Phong 512", "pin3k", false, Kind::plain, 512, 512, true},
       {"pin 3k Gouraud 512", "pin3k", false, Kind::plain, 512, 512},
       {"pin 3k Gouraud once/4x4 512", "pin3k", false, Kind::shaded_once, 512, 512},
+      {"pin 3k Gouraud once/MSAA4 512", "pin3k", false, Kind::multisampled, 512, 512},
       {"room Gouraud 1080", "room", false, Kind::plain, 1920, 1080},
       {"room trilinear 1080", "room", true, Kind::plain, 1920, 1080},
       {"room Gouraud once/4x4 1080", "room", false, Kind::shaded_once, 1920, 1080},

@@ -28,6 +28,8 @@ struct Request {
   int samples = 16, shading_samples = 0;
   sim::Model tessellation = sim::Model::fine;
   int anisotropy = 1;
+  raster::Filter filter = raster::Filter::trilinear;
+  double fog = 0;
 };
 
 struct Drawn {
@@ -65,6 +67,12 @@ void declare(Options& options, Request& request) {
                              {{"fine", sim::Model::fine}, {"coarse", sim::Model::coarse}}, "which of two models");
   options.integer("--anisotropy", "N", request.anisotropy, 1, 8,
                   "most texture probes along a pixel's longer side (the file's, or 1)");
+  using raster::Filter;
+  options.choice<Filter>(
+      "--filter", request.filter,
+      {{"nearest", Filter::nearest}, {"bilinear", Filter::bilinear}, {"trilinear", Filter::trilinear}},
+      "of textures (the file's)");
+  options.real("--fog", "D", request.fog, 0, 1e9, "grey fog that at distance D leaves 2 % of a color (0: none)");
   options.text("--depth", "OUT.pfm", request.depth_out, "window depth, 0 near to 1 far and background");
   options.text("--id", "OUT.png", request.id_out, "polygons as colors; background black");
 }
@@ -100,6 +108,18 @@ std::string scene_problem(const sim::Split& split, const sim::SceneSet& set) {
   return "";
 }
 
+// What the command line says about the scene itself.
+void change_scene(const Options& options, const Request& request, raster::Scene& scene) {
+  for (raster::Material& material : scene.materials) {
+    if (options.given("--anisotropy")) material.anisotropy = request.anisotropy;
+    if (options.given("--filter")) material.filter = request.filter;
+  }
+  if (request.fog == 0) return;
+  scene.fog.kind = raster::Fog::Kind::exponential_squared;
+  scene.fog.color = scene.background = glm::vec3(0.75f);
+  scene.fog.density = static_cast<float>(2 / request.fog);  // exp(-2^2) = 0.018
+}
+
 Result<Drawn> draw(const Options& options, const Request& request, const SceneSource& source, const sim::Split& split) {
   Drawn drawn;
   drawn.color = RgbImage(request.width, request.height);
@@ -110,8 +130,7 @@ Result<Drawn> draw(const Options& options, const Request& request, const SceneSo
   renderer_options.isa = options.isa;
   PAC_TRY(raster::Renderer renderer, raster::Renderer::create(request.width, request.height, renderer_options));
   raster::Scene scene = sim::low_scene(source.set, split);
-  if (options.given("--anisotropy"))
-    for (raster::Material& material : scene.materials) material.anisotropy = request.anisotropy;
+  change_scene(options, request, scene);
   drawn.polygons = scene.mesh.faces.size();
   const float aspect = static_cast<float>(request.width) / static_cast<float>(request.height);
   const raster::Camera camera = source.camera(request.frame, aspect);
