@@ -122,6 +122,12 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rend
   const int shading_samples = input.shading_samples[rendering];
   const int n_groups = list_groups(shading_samples, first_sample, groups);
   const int count = shading_samples == 0 ? static_cast<int>(input.pattern.size()) : shading_samples;
+  if (shading_samples == 0) {
+    take_whole_groups(area, rendering);
+    for (int i = 0; i < n_groups; ++i)
+      shade_whole_groups(input, {rendering, groups[i].number, count, position(area, groups[i].place), false},
+                         sums_[rendering]);
+  }
   for (int row = 0; row < area.height; row += kGridRows)
     for (int i = 0; i < n_groups; ++i) {
       if (groups[i].samples == 0) continue;
@@ -130,6 +136,43 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rend
       shade(input, {rendering, groups[i].number, count, position(area, groups[i].place), shading_samples != 0},
             sums_[rendering]);
     }
+  if (shading_samples == 0) put_whole_groups_back();
+}
+
+// Groups of eight pixels that show one triangle at all samples -> whole_packs_, by material: every sample shades them
+// alike, so they are listed once. Out of the grid, which is left with the others.
+void TilePainter::take_whole_groups(const Area& area, int rendering) {
+  n_whole_packs_ = 0;
+  for (int y = 0; y < area.height; ++y)
+    for (int x = 0; x < area.width; x += 8) {
+      uint32_t* const group = whole_ + y * kTileSize + x;
+      const uint32_t id = group[0];
+      if (id == 0 || id == kSplitPixel || std::any_of(group + 1, group + 8, [&](uint32_t i) { return i != id; }))
+        continue;
+      whole_packs_[n_whole_packs_++] = {triangles_[id - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y), 0xFF, {}};
+      whole_ids_[y * (kTileSize / 8) + x / 8] = id;
+      std::fill_n(group, 8, 0u);
+    }
+  std::sort(whole_packs_, whole_packs_ + n_whole_packs_, [&](const LanePack& a, const LanePack& b) {
+    const uint32_t state_a = a.triangle->state[rendering], state_b = b.triangle->state[rendering];
+    if (state_a != state_b) return state_a < state_b;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
+}
+
+void TilePainter::put_whole_groups_back() {
+  for (int i = 0; i < n_whole_packs_; ++i) {
+    const LanePack& pack = whole_packs_[i];
+    std::fill_n(whole_ + pack.y * kTileSize + pack.x, 8, whole_ids_[pack.y * (kTileSize / 8) + pack.x / 8]);
+  }
+}
+
+void TilePainter::shade_whole_groups(const PaintInput& input, const ShadePass& pass, uint16_t* sums) {
+  for (int first = 0, last = 0; first < n_whole_packs_; first = last) {
+    const uint32_t state = whole_packs_[first].triangle->state[pass.rendering];
+    while (last < n_whole_packs_ && whole_packs_[last].triangle->state[pass.rendering] == state) ++last;
+    shade_packs(input, (*input.surfaces[pass.rendering])[state], pass, whole_packs_ + first, last - first, sums);
+  }
 }
 
 // Each sample a rasterization of its own: tiles with masked or transparent triangles.
@@ -244,12 +287,17 @@ void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t
     }
     left = rest;
     shade_lanes(input, surface, pass, sums);
-    for (int i = 0; i < n; i += kBatchPacks) {
-      const int count = std::min(kBatchPacks, n - i);
-      const ShadedBatch shaded = shader_.shade(input.kernels->tile, surface, pass, batch_ + i, count);
-      input.kernels->tile.accumulate(batch_ + i, count, pass.weighted, shaded.color, shaded.texels, shaded.added,
-                                     input.background, sums);
-    }
+    shade_packs(input, surface, pass, batch_, n, sums);
+  }
+}
+
+void TilePainter::shade_packs(const PaintInput& input, const Surface& surface, const ShadePass& pass,
+                              const LanePack* packs, int n, uint16_t* sums) {
+  for (int i = 0; i < n; i += kBatchPacks) {
+    const int count = std::min(kBatchPacks, n - i);
+    const ShadedBatch shaded = shader_.shade(input.kernels->tile, surface, pass, packs + i, count);
+    input.kernels->tile.accumulate(packs + i, count, pass.weighted, shaded.color, shaded.texels, shaded.added,
+                                   input.background, sums);
   }
 }
 

@@ -61,6 +61,11 @@ class TilePainter {
   void rasterize_mask(const PaintInput& input, uint32_t number, const Surface& surface, const ShadePass& pass);
   int visible_packs(const PaintInput& input, const RasterTriangle& triangle, SamplePosition origin);
   void shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
+  void shade_packs(const PaintInput& input, const Surface& surface, const ShadePass& pass, const LanePack* packs, int n,
+                   uint16_t* sums);
+  void take_whole_groups(const Area& area, int rendering);
+  void put_whole_groups_back();
+  void shade_whole_groups(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
   void shade_lanes(const PaintInput& input, const Surface& surface, const ShadePass& pass, uint16_t* sums);
   static int few_lanes(const Surface& surface);
   void blend(const PaintInput& input, const ShadePass& pass);
@@ -91,6 +96,9 @@ class TilePainter {
   static constexpr int kGridRows = 8, kMostPacks = kGridRows * kTileSize * kGridSamples;
   LanePack packs_[kMostPacks], batch_[kMostPacks], shared_packs_[kTilePixels];
   int n_packs_ = 0;
+  LanePack whole_packs_[kTilePixels / 8];
+  uint32_t whole_ids_[kTilePixels / 8];
+  int n_whole_packs_ = 0;
   LaneSample lanes_[kBatchLanes];  // of packs with few, before they are shaded
   int n_lanes_ = 0;
 };
