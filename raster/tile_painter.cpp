@@ -121,22 +121,49 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rend
   ShadingGroup groups[kGridSamples];
   const int shading_samples = input.shading_samples[rendering];
   const int n_groups = list_groups(shading_samples, first_sample, groups);
-  const int count = shading_samples == 0 ? static_cast<int>(input.pattern.size()) : shading_samples;
-  if (shading_samples == 0) {
-    take_whole_groups(area, rendering);
-    for (int i = 0; i < n_groups; ++i)
-      shade_whole_groups(input, {rendering, groups[i].number, count, position(area, groups[i].place), false},
-                         sums_[rendering]);
-  }
+  if (shading_samples == 0) return shade_each_sample(input, area, rendering, {groups, static_cast<size_t>(n_groups)});
   for (int row = 0; row < area.height; row += kGridRows)
     for (int i = 0; i < n_groups; ++i) {
       if (groups[i].samples == 0) continue;
       n_packs_ = input.kernels->tile.collect_grid(grid_, groups[i].samples, row, std::min(row + kGridRows, area.height),
                                                   area.width, triangles_.data(), packs_);
-      shade(input, {rendering, groups[i].number, count, position(area, groups[i].place), shading_samples != 0},
+      shade(input, {rendering, groups[i].number, shading_samples, position(area, groups[i].place), true},
             sums_[rendering]);
     }
-  if (shading_samples == 0) put_whole_groups_back();
+}
+
+// All samples of the grid, each with a color.
+void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, int rendering,
+                                    std::span<const ShadingGroup> samples) {
+  const auto count = static_cast<int>(input.pattern.size());
+  const auto pass = [&](const ShadingGroup& sample) {
+    return ShadePass{rendering, sample.number, count, position(area, sample.place), false};
+  };
+  take_whole_groups(area, rendering);
+  for (const ShadingGroup& sample : samples) shade_whole_groups(input, pass(sample), sums_[rendering]);
+  for (int row = 0; row < area.height; row += kGridRows) {
+    const int n_rows = std::min(kGridRows, area.height - row);
+    split_by_sample(area, row, n_rows);
+    for (size_t s = 0; s < samples.size(); ++s) {
+      n_packs_ = input.kernels->tile.collect_packs(sample_ids_[s], area.width, n_rows, triangles_.data(), packs_);
+      for (int i = 0; i < n_packs_; ++i) packs_[i].y = static_cast<uint8_t>(packs_[i].y + row);
+      shade(input, pass(samples[s]), sums_[rendering]);
+    }
+  }
+  put_whole_groups_back();
+}
+
+// What each sample of a few rows sees -> sample_ids_.
+void TilePainter::split_by_sample(const Area& area, int first_row, int n_rows) {
+  const auto n_samples = static_cast<size_t>(grid_.n);
+  for (size_t s = 0; s < n_samples; ++s) std::fill_n(sample_ids_[s], n_rows * kTileSize, 0u);
+  for (int i = 0; i < n_rows * kTileSize; ++i) {
+    const int at = first_row * kTileSize + i;
+    if (whole_[at] == 0 || i % kTileSize >= area.width) continue;
+    const bool is_split = whole_[at] == kSplitPixel;
+    for (size_t s = 0; s < n_samples; ++s)
+      sample_ids_[s][i] = is_split ? grid_ids_[static_cast<size_t>(at) * kGridSamples + s] : whole_[at];
+  }
 }
 
 // Groups of eight pixels that show one triangle at all samples -> whole_packs_, by material: every sample shades them

@@ -53,6 +53,9 @@ class TilePainter {
   void shade_first_sample(const PaintInput& input, const Area& area);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);
   void shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample);
+  void shade_each_sample(const PaintInput& input, const Area& area, int rendering,
+                         std::span<const ShadingGroup> samples);
+  void split_by_sample(const Area& area, int first_row, int n_rows);
   int list_groups(int shading_samples, int first_sample, ShadingGroup groups[kGridSamples]) const;
   void write_first_sample(const PaintInput& input, const Area& area);
   void paint_samples(const PaintInput& input, const Area& area);
@@ -96,6 +99,7 @@ class TilePainter {
   static constexpr int kGridRows = 8, kMostPacks = kGridRows * kTileSize * kGridSamples;
   LanePack packs_[kMostPacks], batch_[kMostPacks], shared_packs_[kTilePixels];
   int n_packs_ = 0;
+  alignas(64) uint32_t sample_ids_[kGridSamples][kGridRows * kTileSize];
   LanePack whole_packs_[kTilePixels / 8];
   uint32_t whole_ids_[kTilePixels / 8];
   int n_whole_packs_ = 0;
