@@ -1,0 +1,134 @@
+// Tiles with several samples a pixel: the grid of what they see, and which of them share a color.
+#include <algorithm>
+
+#include "raster/tile_painter.h"
+
+namespace pac::raster {
+
+void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets,
+                             int first_sample) {
+  grid_ = {static_cast<int>(offsets.size()), {}, {}, 255, 0, whole_, near_z_, far_z_, grid_ids_, grid_depth_};
+  for (size_t s = 0; s < kGridSamples; ++s) {
+    const SampleOffset offset = offsets[s % offsets.size()];
+    grid_.x[s] = offset.x;
+    grid_.y[s] = offset.y;
+    grid_.first_offset = std::min({grid_.first_offset, int32_t{offset.x}, int32_t{offset.y}});
+    grid_.last_offset = std::max({grid_.last_offset, int32_t{offset.x}, int32_t{offset.y}});
+  }
+  std::fill_n(whole_, kTilePixels, 0u);
+  std::fill_n(near_z_, kTilePixels, 1.0f);
+  std::fill_n(far_z_, kTilePixels, 1.0f);
+  const SamplePosition corner{area.x * 256, area.y * 256};
+  for (size_t i = 0; i < triangles_.size(); ++i)
+    input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
+  if (wants_color(input, 0)) shade_grid(input, area, 0, first_sample);
+  if (input.surfaces[1] != nullptr && wants_color(input, 1)) shade_grid(input, area, 1, first_sample);
+}
+
+// Every sample by itself; all at the pixel's center; or those of each quarter of the pixel at its center.
+int TilePainter::list_groups(int shading_samples, int first_sample, ShadingGroup groups[kGridSamples]) const {
+  const uint32_t all = (1u << grid_.n) - 1;
+  if (shading_samples == 0) {
+    for (int s = 0; s < grid_.n; ++s)
+      groups[s] = {1u << s, {static_cast<uint8_t>(grid_.x[s]), static_cast<uint8_t>(grid_.y[s])}, first_sample + s};
+    return grid_.n;
+  }
+  if (shading_samples == 1) {
+    groups[0] = {all, {128, 128}, 0};
+    return 1;
+  }
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const int right = quarter & 1, below = quarter >> 1;
+    groups[quarter] = {0, {static_cast<uint8_t>(64 + 128 * right), static_cast<uint8_t>(64 + 128 * below)}, quarter};
+    for (int s = 0; s < grid_.n; ++s)
+      if (grid_.x[s] / 128 == right && grid_.y[s] / 128 == below) groups[quarter].samples |= 1u << s;
+  }
+  return 4;
+}
+
+void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample) {
+  ShadingGroup groups[kGridSamples];
+  const int shading_samples = input.shading_samples[rendering];
+  const int n_groups = list_groups(shading_samples, first_sample, groups);
+  if (shading_samples == 0) return shade_each_sample(input, area, rendering, {groups, static_cast<size_t>(n_groups)});
+  for (int row = 0; row < area.height; row += kGridRows)
+    for (int i = 0; i < n_groups; ++i) {
+      if (groups[i].samples == 0) continue;
+      n_packs_ = input.kernels->tile.collect_grid(grid_, groups[i].samples, row, std::min(row + kGridRows, area.height),
+                                                  area.width, triangles_.data(), packs_);
+      shade(input, {rendering, groups[i].number, shading_samples, position(area, groups[i].place), true},
+            sums_[rendering]);
+    }
+}
+
+// All samples of the grid, each with a color.
+void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, int rendering,
+                                    std::span<const ShadingGroup> samples) {
+  const auto count = static_cast<int>(input.pattern.size());
+  const auto pass = [&](const ShadingGroup& sample) {
+    return ShadePass{rendering, sample.number, count, position(area, sample.place), false};
+  };
+  take_whole_groups(area, rendering);
+  for (const ShadingGroup& sample : samples) shade_whole_groups(input, pass(sample), sums_[rendering]);
+  for (int row = 0; row < area.height; row += kGridRows) {
+    const int n_rows = std::min(kGridRows, area.height - row);
+    split_by_sample(area, row, n_rows);
+    for (size_t s = 0; s < samples.size(); ++s) {
+      n_packs_ = input.kernels->tile.collect_packs(sample_ids_[s], area.width, n_rows, triangles_.data(), packs_);
+      for (int i = 0; i < n_packs_; ++i) packs_[i].y = static_cast<uint8_t>(packs_[i].y + row);
+      shade(input, pass(samples[s]), sums_[rendering]);
+    }
+  }
+  put_whole_groups_back();
+}
+
+// What each sample of a few rows sees -> sample_ids_.
+void TilePainter::split_by_sample(const Area& area, int first_row, int n_rows) {
+  const auto n_samples = static_cast<size_t>(grid_.n);
+  for (size_t s = 0; s < n_samples; ++s) std::fill_n(sample_ids_[s], n_rows * kTileSize, 0u);
+  for (int i = 0; i < n_rows * kTileSize; ++i) {
+    const int at = first_row * kTileSize + i;
+    if (whole_[at] == 0 || i % kTileSize >= area.width) continue;
+    const bool is_split = whole_[at] == kSplitPixel;
+    for (size_t s = 0; s < n_samples; ++s)
+      sample_ids_[s][i] = is_split ? grid_ids_[static_cast<size_t>(at) * kGridSamples + s] : whole_[at];
+  }
+}
+
+// Groups of eight pixels that show one triangle at all samples -> whole_packs_, by material: every sample shades them
+// alike, so they are listed once. Out of the grid, which is left with the others.
+void TilePainter::take_whole_groups(const Area& area, int rendering) {
+  n_whole_packs_ = 0;
+  for (int y = 0; y < area.height; ++y)
+    for (int x = 0; x < area.width; x += 8) {
+      uint32_t* const group = whole_ + y * kTileSize + x;
+      const uint32_t id = group[0];
+      if (id == 0 || id == kSplitPixel || std::any_of(group + 1, group + 8, [&](uint32_t i) { return i != id; }))
+        continue;
+      whole_packs_[n_whole_packs_++] = {triangles_[id - 1], static_cast<uint8_t>(x), static_cast<uint8_t>(y), 0xFF, {}};
+      whole_ids_[y * (kTileSize / 8) + x / 8] = id;
+      std::fill_n(group, 8, 0u);
+    }
+  std::sort(whole_packs_, whole_packs_ + n_whole_packs_, [&](const LanePack& a, const LanePack& b) {
+    const uint32_t state_a = a.triangle->state[rendering], state_b = b.triangle->state[rendering];
+    if (state_a != state_b) return state_a < state_b;
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  });
+}
+
+void TilePainter::put_whole_groups_back() {
+  for (int i = 0; i < n_whole_packs_; ++i) {
+    const LanePack& pack = whole_packs_[i];
+    std::fill_n(whole_ + pack.y * kTileSize + pack.x, 8, whole_ids_[pack.y * (kTileSize / 8) + pack.x / 8]);
+  }
+}
+
+void TilePainter::shade_whole_groups(const PaintInput& input, const ShadePass& pass, uint16_t* sums) {
+  for (int first = 0, last = 0; first < n_whole_packs_; first = last) {
+    const uint32_t state = whole_packs_[first].triangle->state[pass.rendering];
+    while (last < n_whole_packs_ && whole_packs_[last].triangle->state[pass.rendering] == state) ++last;
+    shade_packs(input, (*input.surfaces[pass.rendering])[state], pass, whole_packs_ + first, last - first, sums);
+  }
+}
+
+}  // namespace pac::raster
