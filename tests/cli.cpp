@@ -120,6 +120,8 @@ TEST_CASE("--json prints one JSON object and nothing else, for every command tha
   CHECK(number(render, "triangles") > 0);
   CHECK(render.contains("ms"));
   CHECK(render.at("hash").size() == 16);
+  for (const char* change : {"--filter nearest ", "--fog 5 "})
+    CHECK(json(folder.pac(std::string(kSmall) + change + "--json -o b.png")).at("hash") != render.at("hash"));
   const auto encoded = json(folder.pac("jpeg encode a.png -q 40 -o a.jpg --json"));
   CHECK(number(encoded, "bytes") == static_cast<double>(folder.read("a.jpg").size()));
   const auto info = json(folder.pac("jpeg info a.jpg --json"));

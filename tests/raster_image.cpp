@@ -126,6 +126,31 @@ TEST_CASE("a renderer that is used again, for other scenes in between, draws the
     }
 }
 
+TEST_CASE(
+    "depth and ids drawn without colors are those of a frame with colors; tiles that nothing touches are far and 0") {
+  constexpr int kWidth = 100, kHeight = 70;  // tiles cut at both ends, most of them beside the pin
+  const Scene scene = test_scenes::bumpy_pin(24, 24);
+  const Camera camera = test_scenes::pin_camera(static_cast<float>(kWidth) / kHeight);
+  for (const int samples : {1, 4, 16}) {
+    RenderQuality quality;
+    quality.samples = samples;
+    auto renderer = Renderer::create(kWidth, kHeight);
+    RgbImage color(kWidth, kHeight);
+    DepthImage depth[2] = {DepthImage(kWidth, kHeight), DepthImage(kWidth, kHeight)};
+    IdImage id[2] = {IdImage(kWidth, kHeight), IdImage(kWidth, kHeight)};
+    REQUIRE(renderer->render(scene, camera, quality, {color.view(), depth[0].view(), id[0].view()}).ok());
+    REQUIRE(renderer->render(scene, camera, quality, {{}, depth[1].view(), id[1].view()}).ok());
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        REQUIRE(*depth[0].pixel(x, y) == *depth[1].pixel(x, y));
+        REQUIRE(*id[0].pixel(x, y) == *id[1].pixel(x, y));
+      }
+    CHECK(*id[1].pixel(kWidth / 2, kHeight / 2) != 0);
+    CHECK(*id[1].pixel(1, 1) == 0);
+    CHECK(*depth[1].pixel(1, 1) == 1.0f);
+  }
+}
+
 bool equal(const RgbImage& a, const RgbImage& b) {
   return hash_pixels(a.view()) == hash_pixels(b.view());
 }
