@@ -411,7 +411,7 @@ TEST_CASE("compare matches both arms' bytes and writes a page of its own") {
   CHECK(number(sized, "image_based.bytes") == doctest::Approx(1500).epsilon(0.02));
   CHECK(number(sized, "polygon_assisted.bytes") == doctest::Approx(1500).epsilon(0.02));
   CHECK(number(sized, "polygon_assisted.model_bytes") > 0);
-  CHECK(sized.at("divisions").size() > 1);
+  CHECK(sized.contains("divisions[1].rms"));
   const auto at_16_bits = json(folder.pac(sent + " --position-bits 16"));
   CHECK(number(at_16_bits, "model.position_bits") == 16);
   CHECK(number(sized, "polygon_assisted.rms") <= number(at_16_bits, "polygon_assisted.rms"));
