@@ -78,8 +78,12 @@ class Comparison {
     row("encode, standard Huffman (same bytes)",
         [this](int q) { return encoding(annex_k(q, false), q, false).ratio(); });
     row("encode, optimal Huffman, Annex K", [this](int q) { return encoding(annex_k(q, true), q, true).ratio(); });
-    row("encode --effort default / standard", [this](int q) { return encoding(effort(q), q, false).ratio(); });
-    row("encode --effort default / optimal", [this](int q) { return encoding(effort(q), q, true).ratio(); });
+    row("encode --effort fast / standard",
+        [this](int q) { return encoding(of_effort(jpeg::Effort::fast, q), q, false).ratio(); });
+    row("encode --effort default / standard",
+        [this](int q) { return encoding(of_effort(jpeg::Effort::normal, q), q, false).ratio(); });
+    row("encode --effort default / optimal",
+        [this](int q) { return encoding(of_effort(jpeg::Effort::normal, q), q, true).ratio(); });
     row("decode (same pixels)", [this](int q) { return decoding(q, 0).ratio(); });
     row("decode, restart marker each MCU row", [this](int q) { return decoding(q, 1).ratio(); });
     row("encode, standard Huffman, MP/s", [this](int q) { return rate(encoding(annex_k(q, false), q, false).ours); });
@@ -98,8 +102,8 @@ class Comparison {
     options.huffman = optimal ? jpeg::Huffman::optimal : jpeg::Huffman::standard;
     return options;
   }
-  static jpeg::EncodeOptions effort(int quality) {
-    return jpeg::options_for(jpeg::Effort::normal, jpeg::Tune::psnr, quality);
+  static jpeg::EncodeOptions of_effort(jpeg::Effort effort, int quality) {
+    return jpeg::options_for(effort, jpeg::Tune::psnr, quality);
   }
 
   template <class Fn>
