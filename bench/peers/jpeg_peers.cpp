@@ -78,7 +78,10 @@ class Comparison {
     row("encode, standard Huffman (same bytes)",
         [this](int q) { return encoding(annex_k(q, false), q, false).ratio(); });
     row("encode, optimal Huffman, Annex K", [this](int q) { return encoding(annex_k(q, true), q, true).ratio(); });
-    row("encode --effort fast / standard",
+    row("encode --effort fast / standard", [this](int q) {  // as the command: --tune visual
+      return encoding(jpeg::options_for(jpeg::Effort::fast, jpeg::Tune::visual, q), q, false).ratio();
+    });
+    row("the same, --tune psnr",
         [this](int q) { return encoding(of_effort(jpeg::Effort::fast, q), q, false).ratio(); });
     row("encode --effort default / standard",
         [this](int q) { return encoding(of_effort(jpeg::Effort::normal, q), q, false).ratio(); });
