@@ -5,8 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "mpeg1/headers.h"
 #include "raster/sample_pattern.h"
 #include "sim/difference.h"
+#include "sim/difference_matrices.h"
 #include "sim/frame420.h"
 #include "sim/model_prediction.h"
 #include "sim/model_vectors.h"
@@ -20,29 +22,6 @@ namespace {
 
 // The first byte of each frame: what the decoder must know before the picture.
 constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8, kPacked = 16;
-
-// Eye and metric forgive errors of fine detail; the flat default spends bits on it. Entries 16 (DC) to 58.
-mpeg1::QuantizerMatrix sloping_matrix(double at_dc, double slope) {
-  mpeg1::QuantizerMatrix matrix;
-  for (size_t v = 0; v < 8; ++v)
-    for (size_t u = 0; u < 8; ++u)
-      matrix[8 * v + u] =
-          static_cast<uint8_t>(std::clamp(at_dc + slope * static_cast<double>(u + v) + 0.5, 1.0, 255.0));
-  return matrix;
-}
-
-// D holds H - L at half height: half the quantizer degrades its features as the whole one does H's [Levoy95 s.3]. The
-// entry of the intra DC is fixed at 8 [2.4.3.2].
-mpeg1::QuantizerMatrix halved(mpeg1::QuantizerMatrix matrix) {
-  for (uint8_t& entry : matrix) entry = static_cast<uint8_t>(std::max(3, (entry + 1) / 2));
-  return matrix;
-}
-
-mpeg1::QuantizerMatrix halved_intra() {
-  mpeg1::QuantizerMatrix matrix = halved(mpeg1::kDefaultIntraMatrix);
-  matrix[0] = 8;
-  return matrix;
-}
 
 mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const AssistedVideoOptions& options) {
   mpeg1::SequenceOptions sequence;
@@ -313,14 +292,16 @@ void AssistedEncoder::composite(ConstRgbView low, RgbView shown) const {
 }
 
 struct AssistedDecoder::State {
-  State(const AssistedScene& scene, const Limits& limits, Isa isa)
+  State(const AssistedScene& scene, const Limits& wanted_limits, Isa wanted_isa)
       : width(scene.width),
         height(scene.height),
+        limits(wanted_limits),
+        isa(wanted_isa),
         shared(scene, isa),
-        decoder(options(limits), isa),
+        decoder(options(), isa),
         packer(scene.width, scene.height) {}
 
-  mpeg1::DecoderOptions options(const Limits& limits) {
+  mpeg1::DecoderOptions options() {
     mpeg1::DecoderOptions result;
     result.limits = limits;
     result.strict = true;
@@ -335,9 +316,24 @@ struct AssistedDecoder::State {
     return result;
   }
 
+  // A decoder that has failed fails for ever: another one goes on, which knows the sequence by its last good header.
+  // What it may not have is the picture before: block prediction waits for a picture that stands alone.
+  Failure start_again(const Failure& failure) {
+    decoder = mpeg1::Decoder(options(), isa);
+    if (sequence) {
+      Bytes header;
+      mpeg1::write_sequence_header(*sequence, header);
+      decoder.feed(header);
+    }
+    return failure;
+  }
+
   int width, height;
+  Limits limits;
+  Isa isa;
   SharedState shared;
   mpeg1::Decoder decoder;
+  std::optional<mpeg1::SequenceHeader> sequence;  // of the last picture that was good
   PicturePacker packer;
   Bytes unpacked;
   const Frame420* reference = nullptr;
@@ -383,12 +379,18 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   }
   s.decoder.feed(picture_bytes);
   s.decoder.end_picture();
-  PAC_TRY(const mpeg1::DecodedPicture* picture, s.decoder.next());
-  if (picture == nullptr) return Failure{Error::truncated, bytes.size(), "no picture in the video frame"};
+  const auto decoded = s.decoder.next();
+  if (!decoded.ok()) return s.start_again(decoded.failure());
+  const mpeg1::DecodedPicture* picture = *decoded;
+  if (picture == nullptr) return s.start_again({Error::truncated, bytes.size(), "no picture in the video frame"});
   if (picture->view.width() != s.width || picture->view.height() != s.height)
-    return Failure{Error::corrupt, 1, "pictures have another size than the session"};
+    return s.start_again({Error::corrupt, 1, "pictures have another size than the session"});
   s.shared.keep(picture->view, s.reference != nullptr);
   s.shared.composite(low, shown);
+  s.sequence = *s.decoder.sequence();
+  const auto more = s.decoder.next();  // it would come out in place of the next frame's
+  if (!more.ok()) return s.start_again(more.failure());
+  if (*more != nullptr) return s.start_again({Error::corrupt, 1, "more than one picture in the video frame"});
   return {};
 }
 

@@ -2,14 +2,17 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/metrics.h"
 #include "mpeg1/mpeg1.h"
 #include "sim/animation.h"
+#include "sim/assisted_video.h"
 #include "sim/client.h"
 #include "sim/difference.h"
+#include "sim/frame_renderer.h"
 #include "sim/packet.h"
 #include "sim/server.h"
 #include "sim/video_sequence.h"
@@ -112,6 +115,84 @@ TEST_CASE("after a lost frame the client goes on approximately and is exact agai
       CHECK(rms_error(sent.high.view(), shown->view()) < rms_error(sent.high.view(), sent.low.view()));
     }
   }
+}
+
+// Server and client of a small scene taken apart: what the frames are coded from, and both ends of the codec.
+struct Wire {
+  std::vector<sim::Shot> shots;
+  std::optional<sim::AssistedEncoder> encoder;
+  std::optional<sim::AssistedDecoder> decoder;
+
+  explicit Wire(bool is_packed) {
+    const sim::SceneSet scene = test::small_scene(false);
+    const auto split = sim::make_split("texture", scene, {4});
+    REQUIRE(split.ok());
+    auto renderer = sim::FrameRenderer::create(scene, *split, false, 90, 71, 1, best_isa());
+    REQUIRE(renderer.ok());
+    for (int number = 0; number < 4; ++number) {
+      const raster::Camera camera = test::small_camera(number, 90.0f / 71.0f);
+      auto images = renderer->render(scene, camera, true);
+      REQUIRE(images.ok());
+      shots.push_back({camera, std::move(*images)});
+    }
+    const sim::AssistedScene seen{90, 71, &renderer->low_scene(), split->low.samples};
+    sim::AssistedVideoOptions options;
+    options.quantizer_scale = 6;
+    options.is_packed = is_packed;
+    auto made = sim::AssistedEncoder::create(seen, options);
+    auto other = sim::AssistedDecoder::create(seen);
+    REQUIRE(made.ok());
+    REQUIRE(other.ok());
+    encoder.emplace(std::move(*made));
+    decoder.emplace(std::move(*other));
+  }
+
+  Bytes code(size_t number, bool force_key = false) {
+    const sim::FrameImages& f = shots[number].images;
+    Bytes bytes;
+    REQUIRE(
+        encoder
+            ->encode({f.high.view(), f.low.view(), f.depth.view(), f.id.view(), shots[number].camera}, bytes, force_key)
+            .ok());
+    return bytes;
+  }
+  Result<void> show(size_t number, std::span<const uint8_t> bytes) {
+    const sim::FrameImages& f = shots[number].images;
+    RgbImage shown(90, 71);
+    PAC_CHECK(decoder->decode(bytes, f.low.view(), f.depth.view(), f.id.view(), shots[number].camera, shown.view()));
+    RgbImage wanted(90, 71);
+    encoder->composite(f.low.view(), wanted.view());
+    if (sim::image_hash(shown.view()) != sim::image_hash(wanted.view()))
+      return Failure{Error::bad_argument, 0, "another picture"};
+    return {};
+  }
+};
+
+TEST_CASE("after a picture that is no picture the next one that stands alone puts everything right") {
+  for (const bool is_packed : {false, true}) {
+    CAPTURE(is_packed);
+    Wire wire(is_packed);
+    REQUIRE(wire.show(0, wire.code(0)).ok());
+    Bytes broken = wire.code(1);
+    broken.resize(1 + (broken.size() - 1) / 2);
+    broken[0] &= 0xEF;  // as if it were not packed: a slice that breaks off, or nothing that is MPEG-1
+    CHECK(!wire.show(1, broken).ok());
+    const auto again = wire.show(2, wire.code(2, true));
+    const std::string problem = again.ok() ? "" : again.failure().text;
+    CAPTURE(problem);
+    CHECK(again.ok());
+    CHECK(wire.show(3, wire.code(3)).ok());
+  }
+}
+
+TEST_CASE("a second picture in a frame's bytes is refused, and does not come out in the next one's place") {
+  Wire wire(false);
+  REQUIRE(wire.show(0, wire.code(0)).ok());
+  Bytes two = wire.code(1);
+  const Bytes one = two;
+  two.insert(two.end(), one.begin() + 1, one.end());
+  CHECK(!wire.show(1, two).ok());
+  CHECK(wire.show(2, wire.code(2, true)).ok());
 }
 
 TEST_CASE("a key frame on request ends the damage at once") {
