@@ -126,6 +126,62 @@ TEST_CASE("damaged and truncated bytes are refused or unpack to some picture") {
   CHECK(back == picture);
 }
 
+TEST_CASE("a refused picture teaches nothing: what the last one that stood alone taught still serves") {
+  sim::PicturePacker packer(kWidth, kHeight), unpacker(kWidth, kHeight);
+  const std::vector<Bytes> pictures = coded_pictures(3, 6);
+  const Bytes key = packer.pack(pictures[0], true, {}), next = packer.pack(pictures[1], false, {});
+  Bytes back;
+  REQUIRE(unpacker.unpack(key, true, {}, back).ok());
+  Bytes none;
+  CHECK(!unpacker.unpack(std::span(key).first(key.size() / 2), true, {}, none).ok());
+  back.clear();
+  REQUIRE(unpacker.unpack(next, false, {}, back).ok());
+  CHECK(back == pictures[1]);
+}
+
+TEST_CASE("where a picture that stands alone could not be packed, both sides begin anew") {
+  sim::PicturePacker packer(kWidth, kHeight), unpacker(kWidth, kHeight), forgetful(kWidth, kHeight);
+  const std::vector<Bytes> pictures = coded_pictures(2, 6);
+  const Bytes key = packer.pack(pictures[0], true, {});
+  Bytes back;
+  REQUIRE(unpacker.unpack(key, true, {}, back).ok());
+  const Bytes taught = packer.pack(pictures[1], false, {});
+  CHECK(packer.pack(Bytes(40, 7), true, {}).empty());  // no picture: it would be sent as it is
+  const Bytes untaught = packer.pack(pictures[1], false, {});
+  CHECK(untaught.size() > taught.size());
+  unpacker.forget();
+  back.clear();
+  REQUIRE(unpacker.unpack(untaught, false, {}, back).ok());
+  CHECK(back == pictures[1]);
+  back.clear();
+  REQUIRE(forgetful.unpack(untaught, false, {}, back).ok());
+  CHECK(back == pictures[1]);
+}
+
+TEST_CASE("surfaces decide the size alone: with others than the packer's nothing but a refusal or another picture") {
+  const IdImage surface = stripes();
+  const Bytes picture = coded_pictures(1, 4)[0];
+  sim::PicturePacker packer(kWidth, kHeight), unpacker(kWidth, kHeight);
+  const Bytes packed = packer.pack(picture, true, surface.view());
+  Bytes back;
+  CHECK((!unpacker.unpack(packed, true, {}, back).ok() || back != picture));
+  back.clear();
+  REQUIRE(unpacker.unpack(packed, true, surface.view(), back).ok());
+  CHECK(back == picture);
+}
+
+TEST_CASE("bytes without end and bytes of one value are refused or unpack to one picture of bounded size") {
+  for (const int value : {0, 1, 127, 128, 255})
+    for (const size_t size : {0, 1, 7, 8, 9, 64, 4000}) {
+      sim::PicturePacker packer(kWidth, kHeight);
+      const Bytes bytes(size, static_cast<uint8_t>(value));
+      Bytes out;
+      if (!packer.unpack(bytes, true, {}, out).ok()) CHECK(out.empty());
+      // 30 macroblocks of 384 coefficients of at most 28 bits, and what is before them.
+      CHECK(out.size() < 30 * (384 * 4 + 32) + 300);
+    }
+}
+
 // Bytes of `frames` pictures, and the hash of what was shown last.
 std::pair<uint64_t, uint64_t> served(bool is_packed) {
   sim::SceneSet scene = test::small_scene(false);
