@@ -172,7 +172,7 @@ TEST_CASE("surfaces decide the size alone: with others than the packer's nothing
 
 TEST_CASE("bytes without end and bytes of one value are refused or unpack to one picture of bounded size") {
   for (const int value : {0, 1, 127, 128, 255})
-    for (const size_t size : {0, 1, 7, 8, 9, 64, 4000}) {
+    for (const size_t size : {0u, 1u, 7u, 8u, 9u, 64u, 4000u}) {
       sim::PicturePacker packer(kWidth, kHeight);
       const Bytes bytes(size, static_cast<uint8_t>(value));
       Bytes out;
