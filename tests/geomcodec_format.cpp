@@ -1,14 +1,12 @@
 // The stream's bytes: FORMAT.md's example, one hash for all platforms, a second decoder, and how small streams are.
 #include <doctest/doctest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include "base/file_io.h"
 #include "geomcodec/geomcodec.h"
 #include "tests/support/mesh_zoo.h"
+#include "tests/support/peer.h"
+#include "tests/support/reference_decoder.h"
 
 namespace {
 
@@ -16,17 +14,11 @@ using pac::geomcodec::decode;
 using pac::geomcodec::encode;
 using pac::geomcodec::EncodedSize;
 using pac::geomcodec::QuantizedMesh;
+using pac::test::Fnv;
 using pac::test::mesh_zoo;
 using pac::test::NamedMesh;
-
-class Fnv {
- public:
-  void add(uint32_t value) { hash_ = (hash_ ^ value) * 1099511628211u; }
-  uint64_t hash() const { return hash_; }
-
- private:
-  uint64_t hash_ = 1469598103934665603u;
-};
+using pac::test::summary;
+using pac::test::TempDir;
 
 TEST_CASE("the worked example of FORMAT.md is what encode writes") {
   QuantizedMesh mesh;
@@ -66,52 +58,23 @@ TEST_CASE("streams whose models start untrained are still written and read") {
   }
 }
 
-std::string summary(const QuantizedMesh& mesh) {
-  Fnv fnv;
-  for (const auto& vertex : mesh.vertices) {
-    for (const uint16_t coordinate : vertex.position) fnv.add(coordinate);
-    for (const uint8_t channel : vertex.color) fnv.add(channel);
-    for (const uint16_t component : vertex.normal) fnv.add(component);
-    for (const uint16_t component : vertex.texcoord) fnv.add(component);
-  }
-  for (const pac::Face& face : mesh.faces) {
-    for (uint32_t k = 0; k < face.count; ++k) fnv.add(mesh.indices[face.first + k]);
-    fnv.add(face.material);
-  }
-  char text[64];
-  std::snprintf(text, sizeof text, "%zu %zu %016llx\n", mesh.vertices.size(), mesh.faces.size(),
-                static_cast<unsigned long long>(fnv.hash()));
-  return text;
-}
-
 TEST_CASE("a decoder written from FORMAT.md alone, in another language, reads our streams") {
-  if (std::system("python3 -c 'import zlib' >/dev/null 2>&1") != 0) {
-    const char* ci = std::getenv("CI");
-    if (ci != nullptr && std::strcmp(ci, "true") == 0) FAIL("python3 is missing");
-    MESSAGE("python3 is missing: skipped");
-    return;
-  }
-  std::string command = "python3 " PAC_SOURCE_DIR "/tests/pgc_reference_decoder.py", expected;
-  std::vector<std::string> files;
+  if (!pac::test::have_peer("python3")) return;
+  const TempDir folder;
+  std::string arguments, expected;
+  int n_files = 0;
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.indices.size() > 1200 || entry.mesh.vertices.size() > 1200) continue;
     for (const bool trained : {false, true}) {
       const std::vector<uint8_t> bytes = encode(entry.mesh, {!trained, trained}).value();
-      files.push_back("pgc_reference_" + std::to_string(files.size()) + ".pgc");
-      REQUIRE(pac::write_file(files.back(), bytes).ok());
-      command += " " + files.back();
+      const std::string file = folder.file(std::to_string(n_files++));
+      pac::test::write_bytes(file, bytes);
+      arguments += " " + file;
       expected += summary(decode(bytes).value());
     }
   }
-  REQUIRE(files.size() >= 20);
-  std::string output;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  char line[256];
-  while (std::fgets(line, sizeof line, pipe) != nullptr) output += line;
-  REQUIRE(pclose(pipe) == 0);
-  REQUIRE(output == expected);
-  for (const std::string& file : files) std::remove(file.c_str());
+  REQUIRE(n_files >= 20);
+  pac::test::require_decoded("pgc_reference_decoder.py", arguments, expected);
 }
 
 // A guard against silent loss of compression; FORMAT.md's version must change before these may.

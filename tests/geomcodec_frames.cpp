@@ -1,15 +1,13 @@
 // Frames of a sequence against a reference: the same mesh back, what each kind of change costs, what is refused.
 #include <doctest/doctest.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include "base/exact_math.h"
-#include "base/file_io.h"
 #include "geomcodec/frames.h"
 #include "tests/support/mesh_zoo.h"
+#include "tests/support/peer.h"
+#include "tests/support/reference_decoder.h"
 
 namespace {
 
@@ -29,6 +27,8 @@ using pac::geomcodec::reorder;
 using pac::test::mesh_zoo;
 using pac::test::NamedMesh;
 using pac::test::same;
+using pac::test::summary;
+using pac::test::TempDir;
 
 using Bytes = std::vector<uint8_t>;
 
@@ -218,42 +218,19 @@ TEST_CASE("encode_frame refuses meshes that do not fit together") {
   REQUIRE(encode_frame(reference, reference, {nullptr, true}).failure().error == Error::bad_argument);
 }
 
-std::string summary(const QuantizedMesh& mesh) {
-  uint64_t hash = 1469598103934665603u;
-  const auto add = [&](uint32_t value) { hash = (hash ^ value) * 1099511628211u; };
-  for (const auto& vertex : mesh.vertices) {
-    for (const uint16_t coordinate : vertex.position) add(coordinate);
-    for (const uint8_t channel : vertex.color) add(channel);
-    for (const uint16_t component : vertex.normal) add(component);
-    for (const uint16_t component : vertex.texcoord) add(component);
-  }
-  for (const pac::Face& face : mesh.faces) {
-    for (uint32_t k = 0; k < face.count; ++k) add(mesh.indices[face.first + k]);
-    add(face.material);
-  }
-  char text[64];
-  std::snprintf(text, sizeof text, "%zu %zu %016llx\n", mesh.vertices.size(), mesh.faces.size(),
-                static_cast<unsigned long long>(hash));
-  return text;
-}
-
 TEST_CASE("a decoder of frames written from FORMAT.md alone, in another language, reads ours") {
-  if (std::system("python3 -c 'import zlib' >/dev/null 2>&1") != 0) {
-    const char* ci = std::getenv("CI");
-    if (ci != nullptr && std::strcmp(ci, "true") == 0) FAIL("python3 is missing");
-    MESSAGE("python3 is missing: skipped");
-    return;
-  }
-  std::string command = "python3 -B " PAC_SOURCE_DIR "/tests/pgf_reference_decoder.py", expected;
-  std::vector<std::string> files;
+  if (!pac::test::have_peer("python3")) return;
+  const TempDir folder;
+  std::string arguments, expected;
+  int n_files = 0;
   const auto add = [&](const Bytes& stream, const Bytes& frame, const QuantizedMesh& decoded,
                        const std::string& motion) {
     for (const Bytes* bytes : {&stream, &frame}) {
-      files.push_back("pgf_reference_" + std::to_string(files.size()));
-      REQUIRE(pac::write_file(files.back(), *bytes).ok());
-      command += " " + files.back();
+      const std::string file = folder.file(std::to_string(n_files++));
+      pac::test::write_bytes(file, *bytes);
+      arguments += " " + file;
     }
-    command += " " + motion;
+    arguments += " " + motion;
     expected += summary(decoded);
   };
   for (const NamedMesh& entry : mesh_zoo()) {
@@ -274,15 +251,7 @@ TEST_CASE("a decoder of frames written from FORMAT.md alone, in another language
   const QuantizedMesh view = disturbed(moved(model, motion, Grid{}), 4);
   add(stream, encode_frame(view, model, {&motion, true}).value(), view, numbers);
   add(stream, encode_frame(view, model, {&motion, false}).value(), view, "-");
-
-  std::string output;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  REQUIRE(pipe != nullptr);
-  char line[256];
-  while (std::fgets(line, sizeof line, pipe) != nullptr) output += line;
-  REQUIRE(pclose(pipe) == 0);
-  REQUIRE(output == expected);
-  for (const std::string& file : files) std::remove(file.c_str());
+  pac::test::require_decoded("pgf_reference_decoder.py", arguments, expected);
 }
 
 }  // namespace

@@ -198,7 +198,30 @@ class Decoder:
         assert len(self.data) <= self.at <= len(self.data) + 8
 
 
-class Header:  # section 2
+class Fields:  # section 1, and what ends a header
+    def varint(self):
+        value = shift = 0
+        while True:
+            byte = self.b[self.at]
+            self.at += 1
+            value |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                return value
+
+    def take_sections(self, sizes):
+        b = self.b
+        crc = struct.unpack_from("<I", b, self.at)[0]
+        assert zlib.crc32(b[: self.at] + b[self.at + 4 :]) == crc
+        self.at += 4
+        self.sections = []
+        for size in sizes:
+            self.sections.append(b[self.at : self.at + size])
+            self.at += size
+        assert self.at == len(b)
+
+
+class Header(Fields):  # section 2
     def __init__(self, b):
         assert b[:3] == b"PGC" and b[3] == 2
         self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
@@ -225,14 +248,7 @@ class Header:  # section 2
         present = [self.faces > 0, self.split > 0, some, some and not self.color, some and self.normal_bits > 0,
                    some and self.texcoord_bits > 0, self.highest > 0, some and self.flags & 1 > 0]
         sizes = [self.varint() if x else 0 for x in present]
-        crc = struct.unpack_from("<I", b, self.at)[0]
-        assert zlib.crc32(b[: self.at] + b[self.at + 4 :]) == crc
-        self.at += 4
-        self.sections = []
-        for size in sizes:
-            self.sections.append(b[self.at : self.at + size])
-            self.at += size
-        assert self.at == len(b)
+        self.take_sections(sizes)
 
     def byte(self):
         self.at += 1
@@ -241,16 +257,6 @@ class Header:  # section 2
     def floats(self, n):
         self.at += 4 * n
         return struct.unpack_from("<%df" % n, self.b, self.at - 4 * n)
-
-    def varint(self):
-        value = shift = 0
-        while True:
-            byte = self.b[self.at]
-            self.at += 1
-            value |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                return value
 
 
 class Connectivity:  # section 4

@@ -13,7 +13,7 @@ import pgc_reference_decoder as pgc
 STILL = [1 << 30 if i % 5 == 0 else 0 for i in range(16)]
 
 
-class FrameHeader:
+class FrameHeader(pgc.Fields):
     def __init__(self, b):
         assert b[:3] == b"PGF" and b[3] == 1
         self.b, self.at, flags = b, 5, b[4]
@@ -29,24 +29,7 @@ class FrameHeader:
         self.at += 4
         self.changed = [flags >> 3 + i & 1 for i in range(4)]
         sizes = [self.varint() if x else 0 for x in self.changed]
-        crc = struct.unpack_from("<I", b, self.at)[0]
-        assert zlib.crc32(b[: self.at] + b[self.at + 4 :]) == crc
-        self.at += 4
-        self.sections = []
-        for size in sizes:
-            self.sections.append(b[self.at : self.at + size])
-            self.at += size
-        assert self.at == len(b)
-
-    def varint(self):
-        value = shift = 0
-        while True:
-            byte = self.b[self.at]
-            self.at += 1
-            value |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                return value
+        self.take_sections(sizes)
 
     def signed(self):
         code = self.varint()
