@@ -24,6 +24,9 @@ inline void put_float(std::vector<uint8_t>& out, float value) {
   put_u32(out, std::bit_cast<uint32_t>(value));
 }
 
+// Ends a header: CRC-32 of it and of the sections, then these. Returns the bytes of the header.
+uint64_t put_sections(std::vector<uint8_t>& out, std::span<const std::vector<uint8_t>> sections);
+
 // Sticky: past the end, or at a number that is too long, it delivers zeros and remembers where.
 class ByteReader {
  public:

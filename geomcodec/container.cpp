@@ -93,6 +93,15 @@ uint8_t flags_of(const Header& header) {
 
 }  // namespace
 
+uint64_t put_sections(std::vector<uint8_t>& out, std::span<const std::vector<uint8_t>> sections) {
+  uint32_t checksum = crc32(out);
+  for (const std::vector<uint8_t>& section : sections) checksum = crc32(section, checksum);
+  put_u32(out, checksum);
+  const uint64_t header_bytes = out.size();
+  for (const std::vector<uint8_t>& section : sections) out.insert(out.end(), section.begin(), section.end());
+  return header_bytes;
+}
+
 bool Header::has(Section section) const {
   switch (section) {
     case kConnectivity:
@@ -133,12 +142,7 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
   if (header.constant_color) out.insert(out.end(), header.color, header.color + 4);
   for (uint32_t i = 0; i < kSections; ++i)
     if (header.has(static_cast<Section>(i))) put_varint(out, static_cast<uint32_t>(sections[i].size()));
-
-  uint32_t checksum = crc32(out);
-  for (const std::vector<uint8_t>& section : sections) checksum = crc32(section, checksum);
-  put_u32(out, checksum);
-  header_bytes = out.size();
-  for (const std::vector<uint8_t>& section : sections) out.insert(out.end(), section.begin(), section.end());
+  header_bytes = put_sections(out, sections);
   return out;
 }
 

@@ -134,12 +134,7 @@ std::vector<uint8_t> write_frame(const FrameHeader& header,
   put_u32(out, header.reference_checksum);
   for (uint32_t i = 0; i < kFrameGroups; ++i)
     if (header.changed[i]) put_varint(out, static_cast<uint32_t>(sections[i].size()));
-
-  uint32_t checksum = crc32(out);
-  for (const std::vector<uint8_t>& section : sections) checksum = crc32(section, checksum);
-  put_u32(out, checksum);
-  header_bytes = out.size();
-  for (const std::vector<uint8_t>& section : sections) out.insert(out.end(), section.begin(), section.end());
+  header_bytes = put_sections(out, sections);
   return out;
 }
 
