@@ -79,19 +79,13 @@ class FastSearch {
     return true;
   }
 
-  // The better neighbor to the side, the better one up or down, then the corners beside the best.
   void refine() {
     const MotionVector center = best_.vector;
     const auto try_half = [&](int dx, int dy) {
       const int x = center.x_halfpel + dx, y = center.y_halfpel + dy;
       if (in_.range.contains(x, y)) try_vector(x, y);
     };
-    try_half(-1, 0), try_half(1, 0), try_half(0, -1), try_half(0, 1);
-    const int dx = best_.vector.x_halfpel - center.x_halfpel, dy = best_.vector.y_halfpel - center.y_halfpel;
-    if (dx != 0)
-      try_half(dx, -1), try_half(dx, 1);
-    else if (dy != 0)
-      try_half(-1, dy), try_half(1, dy);
+    refine_by_halves(best_.vector, try_half);
   }
 
   const SearchInput& in_;

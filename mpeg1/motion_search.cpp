@@ -116,13 +116,7 @@ class Search {
         if (i != 4) try_half(i % 3 - 1, i / 3 - 1);
       return;
     }
-    // The better neighbor to the side, the better one up or down, then the corners beside the best.
-    try_half(-1, 0), try_half(1, 0), try_half(0, -1), try_half(0, 1);
-    const int dx = best_.vector.x_halfpel - center.x_halfpel, dy = best_.vector.y_halfpel - center.y_halfpel;
-    if (dx != 0)
-      try_half(dx, -1), try_half(dx, 1);
-    else if (dy != 0)
-      try_half(-1, dy), try_half(1, dy);
+    refine_by_halves(best_.vector, try_half);
   }
 
   const SearchInput& in_;

@@ -45,6 +45,20 @@ struct SearchResult {
   uint32_t cost = 0;  // with the vector's bits
 };
 
+// Half samples around `best`: the better neighbor to the side, the better one up or down, then the corners beside the
+// best. try_half(dx, dy) weighs the place at that distance from where `best` is at first, and moves `best` there if
+// better.
+template <class Try>
+void refine_by_halves(const MotionVector& best, Try&& try_half) {
+  const MotionVector center = best;
+  try_half(-1, 0), try_half(1, 0), try_half(0, -1), try_half(0, 1);
+  const int dx = best.x_halfpel - center.x_halfpel, dy = best.y_halfpel - center.y_halfpel;
+  if (dx != 0)
+    try_half(dx, -1), try_half(dx, 1);
+  else if (dy != 0)
+    try_half(-1, dy), try_half(1, dy);
+}
+
 SearchResult search_motion(const SearchInput& input, const SearchOptions& options);
 
 // The search of Effort::fast: candidates as they are, half samples too; downhill from the best at its phase; half
