@@ -16,14 +16,15 @@
 
 #include "base/file_io.h"
 #include "base/metrics.h"
-#include "base/y4m.h"
+#include "bench/peers/y4m_clip.h"
 #include "mpeg1/mpeg1.h"
 
 namespace {
 
 using namespace pac;
+using bench::Clip;
+using bench::read_clip;
 
-using Clip = std::vector<Frame420>;
 constexpr double kQuantizers[] = {2, 4, 8, 16};
 constexpr int kMissing = 3;  // the script's exit code
 
@@ -31,19 +32,6 @@ double cpu_milliseconds() {
   timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-Clip read_clip(const std::string& path) {
-  Clip clip;
-  const auto bytes = read_file(path);
-  if (!bytes.ok()) return clip;
-  auto reader = Y4mReader::open(*bytes);
-  if (!reader.ok()) return clip;
-  for (Frame420 frame;; frame = Frame420()) {
-    const auto more = reader->next(frame);
-    if (!more.ok() || !*more) return clip;
-    clip.push_back(std::move(frame));
-  }
 }
 
 std::vector<uint8_t> encode(const Clip& clip, double quantizer, bool has_flat_matrix) {

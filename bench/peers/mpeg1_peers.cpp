@@ -19,8 +19,8 @@ extern "C" {
 
 #include "base/file_io.h"
 #include "base/metrics.h"
-#include "base/y4m.h"
 #include "bench/peers/bd_rate.h"
+#include "bench/peers/y4m_clip.h"
 #include "mpeg1/mpeg1.h"
 
 namespace {
@@ -42,8 +42,6 @@ struct Coded {
   double seconds = 0;
   double psnr_db = 0, ssim = 0;
 };
-
-using Clip = std::vector<Frame420>;
 
 // Quality of what our decoder shows (others differ by less than their transforms do).
 void judge(const Clip& clip, Coded& coded) {
@@ -293,19 +291,6 @@ std::vector<double> compare_decoders(const Clip& clip, const Contender& contende
     ratios.push_back(std::min(best[1], best[2]) / best[0]);
   }
   return ratios;
-}
-
-Clip read_clip(const std::string& path) {
-  Clip clip;
-  const auto bytes = read_file(path);
-  if (!bytes.ok()) return clip;
-  auto reader = Y4mReader::open(*bytes);
-  if (!reader.ok()) return clip;
-  for (Frame420 frame;; frame = Frame420()) {
-    const auto more = reader->next(frame);
-    if (!more.ok() || !*more) return clip;
-    clip.push_back(std::move(frame));
-  }
 }
 
 // What the table at the end says of a clip: by contender after libavcodec's default.
