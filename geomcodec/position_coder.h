@@ -96,6 +96,9 @@ class PositionCoder {
     stencils_.get(v, true, stencil_);
     code(v, stencil_, positions);
   }
+  // Passes the next vertex over: what follows takes it for predicted as well as the last one. For an encoder that
+  // samples.
+  void skip() { memory_.push_back(memory_.empty() ? 0 : memory_.back()); }
   // The same where the caller has the stencil (with twists) already; not for raw positions.
   void code(uint32_t v, const Stencil& stencil, std::span<Position> positions);
 

@@ -59,6 +59,13 @@ void code_weights(Coder& coder, PositionWeights& weights) {
   }
 }
 
+// What code_weights() takes.
+inline uint64_t weights_bits(const PositionWeights& weights) {
+  if (weights.raw) return 1;
+  const uint64_t n_own = static_cast<uint64_t>(std::count(weights.own, weights.own + PositionWeights::kClasses, true));
+  return 5 + (weights.period != 0 ? 16 : 0) + (weights.customized ? PositionWeights::kClasses + 16 * n_own : 0);
+}
+
 // What a vertex is predicted from, per axis, in 1/64 of a step.
 struct Features {
   int32_t base[3], mean_less_base[3], twist[3];

@@ -7,12 +7,27 @@
 namespace pac::geomcodec {
 namespace {
 
-std::vector<uint8_t> encode_first(const Topology& topology, const Stencils& stencils, std::vector<Position>& positions,
-                                  size_t count, PositionWeights weights, int bits, bool trained) {
+// Choices are made on the whole of a small mesh, else on windows of so many vertices, spread over it.
+constexpr size_t kWindow = 256, kWindows = 16, kSmall = 6144;
+
+size_t windows_for(size_t n_positions) {
+  return n_positions <= kSmall ? 1 : kWindows;
+}
+
+// The vertices of `n_windows` windows, or all of them as one.
+std::vector<uint8_t> encode_windows(const Topology& topology, const Stencils& stencils,
+                                    std::vector<Position>& positions, size_t n_windows, PositionWeights weights,
+                                    int bits, bool trained) {
   RangeEncoder coder;
   code_weights(coder, weights);
   PositionCoder<RangeEncoder> position_coder(topology, stencils, coder, weights, bits, trained);
-  for (uint32_t v = 0; v < count; ++v) position_coder.code(v, positions);
+  size_t v = 0;
+  for (size_t window = 0; window < n_windows; ++window) {
+    const size_t begin = positions.size() * window / n_windows;
+    const size_t end = n_windows == 1 ? positions.size() : std::min(begin + kWindow, positions.size());
+    for (; v < begin; ++v) position_coder.skip();
+    for (; v < end; ++v) position_coder.code(static_cast<uint32_t>(v), positions);
+  }
   return coder.finish();
 }
 
@@ -20,14 +35,25 @@ std::vector<uint8_t> encode_first(const Topology& topology, const Stencils& sten
 
 std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& stencils,
                                       std::span<const Position> given, int bits, bool trained) {
-  constexpr size_t kSample = 4096;  // choices are made on that many, one after the other
   std::vector<Position> positions(given.begin(), given.end());
-  const size_t sample = std::min(kSample, positions.size());
+  const size_t n_windows = windows_for(positions.size());
+  const size_t sample = n_windows == 1 ? positions.size() : n_windows * kWindow;
+  const auto encode_sample = [&](const PositionWeights& weights) {
+    return encode_windows(topology, stencils, positions, n_windows, weights, bits, trained);
+  };
+  // What all positions would take, in bits: what weights take is paid once.
+  const auto estimate = [&](const std::vector<uint8_t>& bytes, const PositionWeights& weights) {
+    const uint64_t once = std::min<uint64_t>(weights_bits(weights), 8 * bytes.size());
+    return once + (8 * bytes.size() - once) * positions.size() / std::max<size_t>(sample, 1);
+  };
   PositionWeights best;
-  std::vector<uint8_t> best_bytes = encode_first(topology, stencils, positions, sample, best, bits, trained);
+  std::vector<uint8_t> best_bytes = encode_sample(best);
+  uint64_t best_bits = estimate(best_bytes, best);
   const auto try_weights = [&](const PositionWeights& weights) {
-    std::vector<uint8_t> bytes = encode_first(topology, stencils, positions, sample, weights, bits, trained);
-    if (bytes.size() >= best_bytes.size()) return;
+    std::vector<uint8_t> bytes = encode_sample(weights);
+    const uint64_t size = estimate(bytes, weights);
+    if (size >= best_bits) return;
+    best_bits = size;
     best_bytes = std::move(bytes);
     best = weights;
   };
@@ -41,9 +67,9 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
   changed = best;
   changed.period = find_period(positions);
   if (changed.period != 0) try_weights(changed);
-  if (8 * best_bytes.size() > 3 * static_cast<size_t>(bits) * sample) best.raw = true, best_bytes.clear();
-  if (sample == positions.size() && !best.raw) return best_bytes;
-  return encode_first(topology, stencils, positions, positions.size(), best, bits, trained);
+  if (best_bits > uint64_t{3} * static_cast<uint64_t>(bits) * positions.size()) best.raw = true;
+  if (n_windows == 1 && !best.raw) return best_bytes;
+  return encode_windows(topology, stencils, positions, 1, best, bits, trained);
 }
 
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
