@@ -1,5 +1,7 @@
 #include "geomcodec/stencil.h"
 
+#include <algorithm>
+
 namespace pac::geomcodec {
 
 Stencils::Stencils(const Topology& topology) : topology_(topology), first_(size_t{topology.n_vertices} + 1) {
@@ -25,46 +27,58 @@ struct TriangleCorners {
 
 }  // namespace
 
-// add_corner() where every face is a triangle.
-inline void Stencils::add_triangle(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {
+// The loop over add_corner() where every face is a triangle. Whether a vertex is known is as good as random: entries
+// are written whatever the answers are and counted by them, where branches would be mispredicted. Counts are held here,
+// since stores of vertices might change the stencil's own. At most 13 neighbors come before the loop ends, and each
+// other entry needs two of them.
+void Stencils::collect_triangles(uint32_t vertex, bool with_twists, Stencil& stencil) const {
   const uint32_t* corner_vertex = topology_.corner_vertex.data();
   const uint32_t* twin = topology_.twin.data();
-  const TriangleCorners here(corner);
-  const uint32_t a = corner_vertex[here.next], b = corner_vertex[here.previous];
-  if (a < vertex) stencil.add_neighbor(a);
-  if (b < vertex) stencil.add_neighbor(b);
-  if (a >= vertex || b >= vertex) return;
-  const uint32_t across = twin[here.next];
-  if (across == kNone) return;
-  const TriangleCorners there(across);
-  const uint32_t opposite = corner_vertex[there.previous];
-  if (opposite >= vertex) return;
-  stencil.add(a, b, opposite);
-  if (!with_twists) return;
-  const uint32_t left = twin[there.next], right = twin[there.previous];
-  if (left == kNone || right == kNone) return;
-  const uint32_t left_tip = corner_vertex[TriangleCorners(left).previous];
-  const uint32_t right_tip = corner_vertex[TriangleCorners(right).previous];
-  if (left_tip < vertex && right_tip < vertex) stencil.add_twist(left_tip, right_tip, opposite, opposite);
+  const auto or_else = [](uint32_t corner, uint32_t other) { return corner == kNone ? other : corner; };
+  const uint32_t *at = begin(vertex), *last = end(vertex);
+  int n_neighbors = 0, n_parallelograms = 0, n_twists = 0;
+  for (; at != last && n_neighbors < Stencil::kMax; ++at) {
+    const TriangleCorners here(*at);
+    const uint32_t a = corner_vertex[here.next], b = corner_vertex[here.previous];
+    stencil.neighbor[n_neighbors] = a;
+    n_neighbors += a < vertex ? 1 : 0;
+    stencil.neighbor[n_neighbors] = b;
+    n_neighbors += b < vertex ? 1 : 0;
+    if (std::max(a, b) >= vertex) continue;
+
+    // Where no triangle is across, this one stands in, whose third corner is `vertex` itself: not known.
+    const TriangleCorners there(or_else(twin[here.next], here.next));
+    const uint32_t opposite = corner_vertex[there.previous];
+    stencil.parallelogram[n_parallelograms] = {a, b, opposite};
+    n_parallelograms += opposite < vertex ? 1 : 0;
+    if (!with_twists) continue;
+    const uint32_t left = twin[there.next], right = twin[there.previous];
+    const uint32_t left_tip = corner_vertex[TriangleCorners(or_else(left, *at)).previous];
+    const uint32_t right_tip = corner_vertex[TriangleCorners(or_else(right, *at)).previous];
+    stencil.twist[n_twists] = {left_tip, right_tip, opposite, opposite};
+    const bool known = std::max({opposite, left_tip, right_tip}) < vertex;
+    n_twists += static_cast<int>(known & (left != kNone) & (right != kNone));
+  }
+  stencil.n_neighbors = std::min(n_neighbors, Stencil::kMax);
+  stencil.n_parallelograms = n_parallelograms;
+  stencil.n_twists = n_twists;
 }
 
-template <bool kTriangles>
-void Stencils::collect(uint32_t vertex, bool with_twists, Stencil& stencil) const {
+void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
   stencil.clear();
   if (vertex >= topology_.n_vertices) return;
-  const uint32_t begin = first_[vertex], end = first_[vertex + 1];
-  stencil.n_corners = static_cast<int>(end - begin < Stencil::kMax ? end - begin : Stencil::kMax);
-  for (uint32_t i = begin; i < end && stencil.n_neighbors < Stencil::kMax; ++i)
-    if constexpr (kTriangles)
-      add_triangle(vertex, around_[i], with_twists, stencil);
-    else
-      add_corner(vertex, around_[i], with_twists, stencil);
+  const uint32_t *first = begin(vertex), *last = end(vertex);
+  const auto n_corners = std::min<size_t>(static_cast<size_t>(last - first), Stencil::kMax);
+  stencil.n_corners = static_cast<int>(n_corners);
+  if (topology_.all_triangles)
+    collect_triangles(vertex, with_twists, stencil);
+  else
+    for (const uint32_t* corner = first; corner != last && stencil.n_neighbors < Stencil::kMax; ++corner)
+      add_corner(vertex, *corner, with_twists, stencil);
   if (stencil.n_parallelograms > 0) return;
-  for (uint32_t i = begin; i < end && i < begin + Stencil::kMax; ++i) add_extension(vertex, around_[i], stencil);
+  for (size_t i = 0; i < n_corners; ++i) add_extension(vertex, first[i], stencil);
   stencil.extended = stencil.n_parallelograms > 0;
 }
-template void Stencils::collect<true>(uint32_t vertex, bool with_twists, Stencil& stencil) const;
-template void Stencils::collect<false>(uint32_t vertex, bool with_twists, Stencil& stencil) const;
 
 // What the face of one corner at `vertex` offers.
 void Stencils::add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {

@@ -24,7 +24,8 @@ struct Stencil {
   };
   Parallelogram parallelogram[kMax];
   Twist twist[kMax];
-  uint32_t neighbor[kMax];  // vertices that share an edge with this one (twice if two faces share it)
+  // Vertices that share an edge with this one (twice if two faces share it); one more is written before it is dropped.
+  uint32_t neighbor[kMax + 1];
   int n_parallelograms = 0, n_twists = 0, n_neighbors = 0;
   bool extended = false;  // no parallelogram: the list holds straight continuations, side + side - opposite
   int n_corners = 0;      // faces around the vertex, at most kMax
@@ -49,20 +50,13 @@ class Stencils {
  public:
   explicit Stencils(const Topology& topology);
   // Empty for vertices that no face uses; twists only if wanted.
-  void get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
-    if (topology_.all_triangles)
-      collect<true>(vertex, with_twists, stencil);
-    else
-      collect<false>(vertex, with_twists, stencil);
-  }
+  void get(uint32_t vertex, bool with_twists, Stencil& stencil) const;
   // Corners at `vertex`, in their order.
   const uint32_t* begin(uint32_t vertex) const { return around_.data() + first_[vertex]; }
   const uint32_t* end(uint32_t vertex) const { return around_.data() + first_[vertex + 1]; }
 
  private:
-  template <bool kTriangles>
-  void collect(uint32_t vertex, bool with_twists, Stencil& stencil) const;
-  void add_triangle(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const;
+  void collect_triangles(uint32_t vertex, bool with_twists, Stencil& stencil) const;
   void add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const;
   void add_extension(uint32_t vertex, uint32_t corner, Stencil& stencil) const;
   uint32_t tip_across(uint32_t vertex, uint32_t edge) const;
