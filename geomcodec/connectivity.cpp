@@ -97,7 +97,11 @@ struct Source {
       : indices(mesh_indices),
         faces(mesh_faces),
         edges(mesh_indices, mesh_faces, n_vertices),
-        coded_vertex(n_vertices, kNone) {}
+        coded_vertex(n_vertices, kNone) {
+    order.vertex.reserve(n_vertices);
+    order.face.reserve(mesh_faces.size());
+    order.first_corner.reserve(mesh_faces.size());
+  }
   std::span<const uint32_t> indices;
   std::span<const Face> faces;
   EdgeIndex edges;
@@ -134,6 +138,7 @@ class Walk {
     }
     for (uint32_t& twin : topology_.twin)
       if (twin == kOpen) twin = kNone;
+    if (topology_.all_triangles) number_triangles();
     return topology_.n_vertices == header_.n_vertices && topology_.n_corners() == header_.n_corners;
   }
   Topology take() { return std::move(topology_); }
@@ -144,6 +149,12 @@ class Walk {
     topology_.corner_face.reserve(n_corners);
     topology_.twin.reserve(n_corners);
     topology_.face_first.reserve(n_corners / 3 + 2);
+    open_.reserve(n_corners);
+  }
+  void number_triangles() {
+    topology_.corner_face.resize(topology_.n_corners());
+    uint32_t* corner_face = topology_.corner_face.data();
+    for (uint32_t face = 0; face < topology_.n_faces(); ++face) std::fill_n(corner_face + 3 * size_t{face}, 3, face);
   }
   static uint32_t clamped(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
   uint32_t start_of(uint32_t corner) const { return topology_.corner_vertex[corner]; }
@@ -234,7 +245,9 @@ bool Walk<Coder>::code_face(uint32_t gate) {
   const uint32_t size_less_3 = code_size_across(gate_size);
   const uint64_t room = header_.n_corners - topology_.n_corners();
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
-  corners_.assign({end_of(gate), start_of(gate)});
+  corners_.clear();
+  corners_.push_back(end_of(gate));
+  corners_.push_back(start_of(gate));
   topology_.twin[gate] = topology_.n_corners();  // no longer open: finish_face() adds the other side
   const uint32_t size = size_less_3 + 3;
   for (uint32_t k = 2; k < size; ++k) {
@@ -325,9 +338,12 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
 template <class Coder>
 void Walk<Coder>::finish_face(uint32_t gate) {
   const uint32_t first = topology_.n_corners(), face = topology_.n_faces();
-  topology_.corner_vertex.insert(topology_.corner_vertex.end(), corners_.begin(), corners_.end());
-  topology_.corner_face.insert(topology_.corner_face.end(), corners_.size(), face);
-  topology_.twin.insert(topology_.twin.end(), corners_.size(), kOpen);
+  // One by one: what insert() does for a few elements takes longer than everything else here.
+  for (const uint32_t vertex : corners_) {
+    topology_.corner_vertex.push_back(vertex);
+    topology_.twin.push_back(kOpen);
+    if (!topology_.all_triangles) topology_.corner_face.push_back(face);
+  }
   topology_.face_first.push_back(topology_.n_corners());
   if (gate != kNone) open_.pair(gate, first);
   for (uint32_t corner = first; corner < topology_.n_corners(); ++corner) {

@@ -43,6 +43,7 @@ Walked walk(const QuantizedMesh& mesh) {
   point_indices.reserve(mesh.indices.size());
   for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
   CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, points.count);
+  point_indices = {};  // memory is scarce: 12 bytes a triangle
   walked.points = std::move(connectivity.topology);
   walked.connectivity_bytes = std::move(connectivity.bytes);
   walked.order = std::move(connectivity.order);

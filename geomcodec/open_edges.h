@@ -17,9 +17,9 @@ class OpenEdges {
 
   explicit OpenEdges(Topology& topology) : topology_(topology) {}
 
+  void reserve(size_t n_corners) { next_.reserve(n_corners); }
   void add_vertex() {
-    out_head_.push_back(kNone);
-    in_head_.push_back(kNone);
+    newest_.emplace_back();
     queued_.push_back(0);
   }
   // Call for each corner of a new face in turn, once all of its corners are in the topology. Pairs the corner's edge
@@ -36,29 +36,34 @@ class OpenEdges {
 
   // The vertex before `vertex` (after it) on the boundary: where its newest open edge comes from (goes to), or kNone.
   uint32_t before(uint32_t vertex) {
-    const uint32_t corner = newest(in_head_, in_next_, vertex);
+    const uint32_t corner = newest(&Links::in, vertex);
     return corner == kNone ? kNone : topology_.corner_vertex[corner];
   }
   uint32_t after(uint32_t vertex) {
-    const uint32_t corner = newest(out_head_, out_next_, vertex);
+    const uint32_t corner = newest(&Links::out, vertex);
     return corner == kNone ? kNone : end_of(corner);
   }
 
  private:
   bool is_open(uint32_t corner) const { return topology_.twin[corner] == kOpen; }
   uint32_t end_of(uint32_t corner) const { return topology_.corner_vertex[topology_.next(corner)]; }
+  // Corners whose edges leave (out) and enter (in) one vertex: lists, newest first.
+  struct Links {
+    uint32_t out = kNone, in = kNone;
+  };
   // Edges that are no longer open leave the lists when they come to the front.
-  uint32_t newest(std::vector<uint32_t>& head, const std::vector<uint32_t>& next, uint32_t vertex) {
-    while (head[vertex] != kNone && !is_open(head[vertex])) head[vertex] = next[head[vertex]];
-    return head[vertex];
+  uint32_t newest(uint32_t Links::*list, uint32_t vertex) {
+    uint32_t& corner = newest_[vertex].*list;
+    while (corner != kNone && !is_open(corner)) corner = next_[corner].*list;
+    return corner;
   }
   uint32_t find_reverse(uint32_t from, uint32_t to);
 
   Topology& topology_;
-  std::vector<uint32_t> out_head_, in_head_;  // per vertex: newest corner whose edge leaves (enters) it, or kNone
-  std::vector<uint32_t> out_next_, in_next_;  // per corner: the one before it in that list
-  std::vector<uint8_t> queued_;               // per vertex: it is in queue_
-  std::vector<uint32_t> queue_;               // vertices with edges to build on, oldest at queue_front_
+  std::vector<Links> newest_;    // per vertex: where its lists begin
+  std::vector<Links> next_;      // per corner: the one before it in either list
+  std::vector<uint8_t> queued_;  // per vertex: it is in queue_
+  std::vector<uint32_t> queue_;  // vertices with edges to build on, oldest at queue_front_
   size_t queue_front_ = 0;
 };
 
