@@ -20,6 +20,10 @@ struct Picture {
   int concealed = 0;
 };
 
+bool is_reference(PictureType type) {
+  return type == PictureType::I || type == PictureType::P;
+}
+
 FrameView cropped(const Frame420& frame, int width, int height) {
   const auto crop = [](PlaneView<const uint8_t> plane, int w, int h) {
     plane.width = w;
@@ -53,6 +57,7 @@ struct Decoder::State {
   bool choose_references(const PictureHeader& header, Planes& forward, Planes& backward);
   void conceal();
   void deliver(Picture& picture);
+  Picture& in_work() { return is_reference(context.header.type) ? references[0] : spare; }
   void forget_pictures();
   uint64_t offset_of(size_t position) const { return discarded + position; }
 
@@ -76,15 +81,17 @@ struct Decoder::State {
   bool group_is_closed = false, group_is_broken = false;
   int pictures_since_group = 0;
 
-  // references[1] is the newest; spare is decoded into.
+  // references[1] is the newest. The next reference picture, which needs no other, is decoded into references[0]; B and
+  // D pictures into spare.
   Picture references[2], spare;
   Frame420 replaced;  // the caller's reference, in whole macroblocks
   int n_references = 0;
   bool waits_for_output = false;  // references[1] has not been delivered
-  bool in_picture = false;        // slices belong to spare
+  bool in_picture = false;        // slices belong to in_work()
   PictureContext context;
   SliceReader reader{context};
   std::vector<uint8_t> covered;
+  std::vector<uint8_t> last_covered;  // of references[1]: where it is a copy of references[0]
   bool has_output = false;
   DecodedPicture output;
 };
@@ -97,6 +104,7 @@ Result<void> Decoder::State::violation(Failure what) {
 
 void Decoder::State::forget_pictures() {
   n_references = 0;
+  last_covered.clear();
   waits_for_output = in_picture = false;
 }
 
@@ -134,8 +142,8 @@ bool Decoder::State::choose_references(const PictureHeader& header, Planes& forw
       const Frame420* given = options.reference(options.reference_context, header, last);
       if (given != nullptr) {
         PAC_ASSERT(given->width() == sequence.width && given->height() == sequence.height);
-        if (replaced.width() != spare.samples.width() || replaced.height() != spare.samples.height())
-          replaced = Frame420(spare.samples.width(), spare.samples.height());
+        const int width = 16 * macroblock_columns(sequence.width), height = 16 * macroblock_rows(sequence.height);
+        if (replaced.width() != width || replaced.height() != height) replaced = Frame420(width, height);
         forward = Planes::of(replaced);
         fill_planes(view_of(*given), forward);
         return true;
@@ -169,27 +177,33 @@ Result<void> Decoder::State::take_picture(std::span<const uint8_t> payload) {
 Result<void> Decoder::State::start_picture(const PictureHeader& header) {
   const int columns = macroblock_columns(sequence.width), rows = macroblock_rows(sequence.height);
   for (Picture* picture : {&references[0], &references[1], &spare}) {
+    if (picture == &spare && is_reference(header.type)) continue;
     if (picture->samples.width() == 16 * columns && picture->samples.height() == 16 * rows) continue;
     picture->samples = Frame420(16 * columns, 16 * rows);
   }
-  if (header.type == PictureType::I || header.type == PictureType::P) ++pictures_since_group;
+  if (is_reference(header.type)) ++pictures_since_group;
   context = PictureContext{};
   if (!choose_references(header, context.forward, context.backward)) {
     ++report.dropped_pictures;
     return violation({Error::corrupt, offset_of(at), "picture without its reference pictures"});
   }
-  spare.header = header;
-  spare.byte_offset = offset_of(at);
-  spare.concealed = 0;
   context.kernels = &kernels.motion;
   context.header = header;
+  Picture& picture = in_work();
+  picture.header = header;
+  picture.byte_offset = offset_of(at);
+  picture.concealed = 0;
   context.columns = columns;
   context.rows = rows;
-  context.target = Planes::of(spare.samples);
+  context.target = Planes::of(picture.samples);
   context.intra = &intra;
   context.non_intra = &non_intra;
   context.covered = &covered;
-  covered.assign(static_cast<size_t>(columns) * static_cast<size_t>(rows), 0);
+  covered.assign(static_cast<size_t>(columns) * static_cast<size_t>(rows), kMissing);
+  if (header.type == PictureType::P && context.forward.data[0] == references[1].samples.y.row(0)) {
+    context.skipped = kKept;
+    if (last_covered.size() == covered.size()) context.kept_before = last_covered.data();
+  }
   reader.start_picture();
   in_picture = true;
   return {};
@@ -216,18 +230,18 @@ void Decoder::State::conceal() {
     if (n_references > 0) {
       source = Planes::of(references[1].samples);
     } else {
-      gray = Frame420(spare.samples.width(), spare.samples.height());
+      gray = Frame420(in_work().samples.width(), in_work().samples.height());
       fill_gray(gray);
       source = Planes::of(gray);
     }
   }
   for (size_t i = 0; i < covered.size(); ++i) {
-    if (covered[i] != 0) continue;
+    if (covered[i] != kMissing) continue;
     const int address = static_cast<int>(i);
     copy_macroblocks(source, address % context.columns, address / context.columns, 1, context.target);
-    ++spare.concealed;
+    ++in_work().concealed;
   }
-  report.concealed_macroblocks += static_cast<uint64_t>(spare.concealed);
+  report.concealed_macroblocks += static_cast<uint64_t>(in_work().concealed);
 }
 
 void Decoder::State::deliver(Picture& picture) {
@@ -242,17 +256,16 @@ void Decoder::State::deliver(Picture& picture) {
 // once.
 Result<void> Decoder::State::complete_picture() {
   in_picture = false;
-  if (std::find(covered.begin(), covered.end(), uint8_t{0}) != covered.end()) {
+  if (std::find(covered.begin(), covered.end(), uint8_t{kMissing}) != covered.end()) {
     conceal();
-    PAC_CHECK(violation({Error::corrupt, spare.byte_offset, "macroblocks are missing"}));
+    PAC_CHECK(violation({Error::corrupt, in_work().byte_offset, "macroblocks are missing"}));
   }
-  const PictureType type = spare.header.type;
-  if (type == PictureType::B || type == PictureType::D) {
+  if (!is_reference(context.header.type)) {
     deliver(spare);
     return {};
   }
   std::swap(references[0], references[1]);
-  std::swap(references[1], spare);
+  std::swap(covered, last_covered);
   n_references = std::min(n_references + 1, 2);
   if (options.low_delay) {
     deliver(references[1]);

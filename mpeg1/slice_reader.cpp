@@ -114,6 +114,7 @@ SliceReader::SliceReader(const PictureContext& picture) : picture_(picture) {
 }
 
 void SliceReader::start_picture() {
+  kept_before_ = picture_.kept_before;
   for (int block = 0; block < 6; ++block) {
     strides_[block] = picture_.target.stride[plane_of(block)];
     if (block < 4) offsets_[block] = (block & 1) * 8 + (block >> 1) * 8 * strides_[block];
@@ -134,6 +135,7 @@ void SliceReader::transform_all() {
 const char* SliceReader::read(std::span<const uint8_t> bytes, int row) {
   const char* problem = read_macroblocks(bytes, row);
   transform_all();
+  if (problem != nullptr) give_up_macroblock();
   return problem;
 }
 
@@ -153,7 +155,7 @@ const char* SliceReader::read_macroblocks(std::span<const uint8_t> bytes, int ro
   do {
     if (!read_macroblock()) return error_;
     if (bits_.overrun()) return "macroblock runs past the slice";
-    (*picture_.covered)[static_cast<size_t>(address_)] = 1;
+    (*picture_.covered)[static_cast<size_t>(address_)] = kDecoded;
   } while (!bits_.only_zeros_left());
   return address_ > first ? nullptr : "slice without macroblocks";
 }
@@ -192,11 +194,36 @@ bool SliceReader::skip_macroblocks(int from, int to) {
     if (is_b)
       predict();
     else
-      copy_macroblocks(picture_.forward, column_, row_, count, picture_.target);
-    std::memset(picture_.covered->data() + address, 1, static_cast<size_t>(count));
+      keep_macroblocks(address, count);
+    std::memset(picture_.covered->data() + address, is_b ? kDecoded : picture_.skipped, static_cast<size_t>(count));
     address += count;
   }
   return true;
+}
+
+// The target holds what the forward reference holds there: nothing has been written and nothing need be.
+inline bool SliceReader::shows_reference(int address) const {
+  const auto i = static_cast<size_t>(address);
+  return kept_before_ != nullptr && kept_before_[i] == kKept && (*picture_.covered)[i] == kMissing;
+}
+
+// `count` macroblocks from (column_, row_) on, inside one row, become those of the forward reference.
+void SliceReader::keep_macroblocks(int first, int count) {
+  for (int i = 0; i < count;) {
+    const bool is_there = shows_reference(first + i);
+    int end = i + 1;
+    while (end < count && shows_reference(first + end) == is_there) ++end;
+    if (!is_there) copy_macroblocks(picture_.forward, column_ + i, row_, end - i, picture_.target);
+    i = end;
+  }
+}
+
+// A macroblock that could not be read may have been written to: it is no copy any more, nor what the target held.
+void SliceReader::give_up_macroblock() {
+  kept_before_ = nullptr;
+  if (address_ < 0) return;
+  uint8_t& covered = (*picture_.covered)[static_cast<size_t>(address_)];
+  if (covered == kKept) covered = kDecoded;
 }
 
 bool SliceReader::read_component(int r_size, int16_t& component) {
@@ -230,6 +257,7 @@ bool SliceReader::read_vectors(uint8_t flags) {
 
 void SliceReader::predict() {
   const PictureHeader& header = picture_.header;
+  if (header.type == PictureType::P && vectors_[0] == MotionVector{} && shows_reference(address_)) return;
   const bool from_forward = header.type == PictureType::P || (flags_ & kForward) != 0;
   if (from_forward)
     predict_macroblock(*picture_.kernels, picture_.forward, column_, row_,

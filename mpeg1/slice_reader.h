@@ -21,7 +21,13 @@ struct Dequantizer {
 };
 void make_dequantizer(const QuantizerMatrix& matrix, bool is_intra, Dequantizer& dequantizer);
 
-// What all slices of a picture share. `covered` has a byte a macroblock: 1 once reconstructed.
+// How a macroblock of a picture came about. `kept`: a copy of what the picture's forward reference shows there.
+enum Coverage : uint8_t { kMissing = 0, kDecoded = 1, kKept = 2 };
+
+// What all slices of a picture share. `covered` has a Coverage a macroblock.
+//
+// The target of a P picture holds the reference picture before last, of which the last one kept some macroblocks:
+// there the target shows already what the forward reference shows. `kept_before`, if not null, tells where.
 struct PictureContext {
   const MotionKernels* kernels = nullptr;
   PictureHeader header;
@@ -30,6 +36,8 @@ struct PictureContext {
   const Dequantizer* intra = nullptr;
   const Dequantizer* non_intra = nullptr;
   std::vector<uint8_t>* covered = nullptr;
+  const uint8_t* kept_before = nullptr;
+  Coverage skipped = kDecoded;  // what a skipped macroblock of a P picture is: kKept if its reference is the last one
 };
 
 // Reconstructs the macroblocks of slices.
@@ -68,6 +76,9 @@ class SliceReader {
   bool read_macroblock();
   bool read_address(int& address);
   bool skip_macroblocks(int from, int to);
+  void keep_macroblocks(int first, int count);
+  bool shows_reference(int address) const;
+  void give_up_macroblock();
   bool read_quantizer();
   bool read_vector(int direction, bool full_pel, int f_code);
   bool read_component(int r_size, int16_t& component);
@@ -86,6 +97,7 @@ class SliceReader {
 
   const PictureContext& picture_;
   ptrdiff_t offsets_[6] = {}, strides_[6] = {};  // of each block: from its macroblock's first sample of the plane
+  const uint8_t* kept_before_ = nullptr;         // the picture's, until something went wrong
   UnitReader bits_;
   const char* error_ = nullptr;
   int address_ = 0, column_ = 0, row_ = 0;
