@@ -42,12 +42,15 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
   task.candidates = picture.candidates.data();
   task.candidates_per_macroblock = picture.candidates_per_macroblock;
   task.must_be_intra = type == PictureType::P ? forced.data() : nullptr;
+  was_replaced = picture.reference != nullptr;
+  if (!is_touched && !was_replaced) task.shows_reference = kept.data();
   task.bits_of_difference = bits_of_difference.data();
   task.macroblocks = macroblocks.data();
   return task;
 }
 
 void Encoder::State::code_picture(const PictureTask& task) {
+  is_touched = true;
   pool.for_each(static_cast<int64_t>(bands.size()), [&](int64_t i) { code_band(task, bands[static_cast<size_t>(i)]); });
 }
 

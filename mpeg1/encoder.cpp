@@ -54,6 +54,17 @@ void Encoder::State::age_macroblocks() {
   }
 }
 
+// What a picture left as it was need not be copied when the next but one leaves it, too.
+void Encoder::State::note_kept(PictureType type) {
+  kept.resize(macroblocks.size());
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const Macroblock& m = macroblocks[i];
+    const bool is_kept = m.kind != MacroblockKind::intra && m.pattern == 0 && m.vector == MotionVector{};
+    kept[i] = type == PictureType::P && !was_replaced && is_kept ? 1 : 0;
+  }
+  is_touched = false;
+}
+
 void Encoder::State::finish_picture(PictureType type) {
   std::swap(reconstruction, reference);  // the next picture's reference, and what reconstruction() shows
   has_last_vectors = type == PictureType::P;
@@ -61,6 +72,7 @@ void Encoder::State::finish_picture(PictureType type) {
   coarse.finish_picture();
   age_macroblocks();
   watch_stillness(type);
+  note_kept(type);
   ++temporal_reference;
   ++picture_count;
 }

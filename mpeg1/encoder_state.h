@@ -50,6 +50,7 @@ struct Encoder::State {
   void code_picture(const PictureTask& task);
   PictureReport write_picture(PictureType type, std::vector<uint8_t>& out);
   void finish_picture(PictureType type);
+  void note_kept(PictureType type);
 
   SequenceOptions options;
   const Kernels& kernels;
@@ -76,9 +77,14 @@ struct Encoder::State {
   std::vector<uint8_t> still;   // P pictures of the group that left each macroblock without coefficients
   int n_watched = 0;            // P pictures that `still` counts
   std::vector<uint8_t> forced;  // must be intra
-  bool in_sequence = false;     // a sequence header was written and no end
-  int64_t picture_count = 0;    // of the sequence, for the time code
-  int temporal_reference = 0;   // of the next picture in its group
+  // Of each macroblock: the picture before last, which `reconstruction` holds until a picture is coded, has the samples
+  // of the last one, `reference`.
+  std::vector<uint8_t> kept;
+  bool is_touched = true;      // `reconstruction` has been written to since
+  bool was_replaced = false;   // the picture in work is predicted from the caller's reference
+  bool in_sequence = false;    // a sequence header was written and no end
+  int64_t picture_count = 0;   // of the sequence, for the time code
+  int temporal_reference = 0;  // of the next picture in its group
 };
 
 }  // namespace pac::mpeg1

@@ -49,7 +49,8 @@ bool FastCoder::stays(const uint32_t (&quarters)[4]) const {
 void FastCoder::keep_reference() {
   vector_ = {};
   coded_.pattern = 0;
-  copy_macroblocks(task_.reference, column_, row_, 1, task_.target);
+  if (task_.shows_reference == nullptr || task_.shows_reference[address()] == 0)
+    copy_macroblocks(task_.reference, column_, row_, 1, task_.target);
   describe();
 }
 

@@ -26,8 +26,9 @@ struct PictureTask {
   int coarse_columns = 0;
   const MotionVector* candidates = nullptr;  // of the caller
   int candidates_per_macroblock = 0;
-  const uint8_t* must_be_intra = nullptr;       // intra refresh: a byte a macroblock, or null
-  int f_code = 4;                               // vectors stay in its range
+  const uint8_t* must_be_intra = nullptr;    // intra refresh: a byte a macroblock, or null
+  const uint8_t* shows_reference = nullptr;  // a byte a macroblock: the target holds the reference's samples; or null
+  int f_code = 4;                            // vectors stay in its range
   const uint8_t* bits_of_difference = nullptr;  // see SearchInput
   Macroblock* macroblocks = nullptr;            // result, raster order
 };
