@@ -19,20 +19,21 @@ uint8_t clamped(int value) {
   return static_cast<uint8_t>(std::clamp(value, 0, 255));
 }
 
-// 1 where a pixel and its right or lower neighbor do not belong together.
+// 1 where a pixel and its right or lower neighbor do not belong together. Without branches: whole rows in vectors.
 void mark_jumps(const SurfaceMap& map, GrayImage& jumps) {
   const int width = map.surface.width(), height = map.surface.height();
+  const auto jump = [](uint32_t surface, uint32_t other_surface, float u, float other_u) {
+    return static_cast<int>(surface != other_surface) | static_cast<int>(!same_depth(u, other_u));
+  };
   for (int y = 0; y < height; ++y) {
     const int below = std::min(y + 1, height - 1);
     const uint32_t *s = map.surface.row(y), *s_below = map.surface.row(below);
     const float *u = map.u.row(y), *u_below = map.u.row(below);
     uint8_t* out = jumps.row(y);
-    for (int x = 0; x < width; ++x) {
-      const int right = std::min(x + 1, width - 1);
-      const bool together =
-          s[x] == s[right] && s[x] == s_below[x] && same_depth(u[x], u[right]) && same_depth(u[x], u_below[x]);
-      out[x] = together ? 0 : 1;
-    }
+    for (int x = 0; x < width; ++x) out[x] = static_cast<uint8_t>(jump(s[x], s_below[x], u[x], u_below[x]));
+    for (int x = 0; x + 1 < width; ++x) out[x] |= static_cast<uint8_t>(jump(s[x], s[x + 1], u[x], u[x + 1]));
+    // The last column is its own neighbor: a jump only where u is below 0 or no number.
+    out[width - 1] |= static_cast<uint8_t>(!same_depth(u[width - 1], u[width - 1]));
   }
 }
 
@@ -119,17 +120,26 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
 
 void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma,
                                   SurfaceMap& chroma) {
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const uint32_t face = id.row(y)[x];
-      luma.surface.row(y)[x] = face < surfaces_.size() ? surfaces_[face] : 0;
-      luma.u.row(y)[x] = 1.0f - depth.row(y)[x];
-    }
-  for (int y = 0; y < chroma.u.height(); ++y)
+  const uint32_t* surfaces = surfaces_.data();
+  const size_t n_surfaces = surfaces_.size();
+  for (int y = 0; y < height_; ++y) {
+    const uint32_t* faces = id.row(y);
+    const float* depths = depth.row(y);
+    uint32_t* surface = luma.surface.row(y);
+    float* u = luma.u.row(y);
+    for (int x = 0; x < width_; ++x) surface[x] = faces[x] < n_surfaces ? surfaces[faces[x]] : 0;
+    for (int x = 0; x < width_; ++x) u[x] = 1.0f - depths[x];
+  }
+  for (int y = 0; y < chroma.u.height(); ++y) {
+    const uint32_t* luma_surface = luma.surface.row(2 * y);
+    const float* luma_u = luma.u.row(2 * y);
+    uint32_t* surface = chroma.surface.row(y);
+    float* u = chroma.u.row(y);
     for (int x = 0; x < chroma.u.width(); ++x) {
-      chroma.surface.row(y)[x] = luma.surface.row(2 * y)[2 * x];
-      chroma.u.row(y)[x] = luma.u.row(2 * y)[2 * x];
+      surface[x] = luma_surface[2 * x];
+      u[x] = luma_u[2 * x];
     }
+  }
   for (SurfaceMap* map : {&luma, &chroma}) {
     GrayImage jumps(map->u.width(), map->u.height());
     mark_jumps(*map, jumps);

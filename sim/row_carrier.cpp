@@ -28,43 +28,58 @@ int weight(int bit, int x_64, int y_64) {
 }  // namespace
 
 void RowCarrier::find(int y, ptrdiff_t plane_stride) {
-  offset_.clear();
-  phase_x_.clear();
-  phase_y_.clear();
-  column_.clear();
+  const auto width = static_cast<size_t>(now_.u.width());
+  offset_.resize(width);
+  phase_x_.resize(width);
+  phase_y_.resize(width);
+  column_.resize(width);
   candidates_.clear();
   edge_points_.clear();
   edges_.clear();
   nearest_.clear();
-  const int step = is_chroma_ ? 2 : 1, shift = is_chroma_ ? 1 : 0, width = now_.u.width();
-  const int32_t *flow_x = flow_.x_64.row(y * step), *flow_y = flow_.y_64.row(y * step);
-  const float* flow_u = flow_.u_before.row(y * step);
-  const uint32_t* surface = now_.surface.row(y);
-  for (int x = 0; x < width; ++x) {
-    if (flow_x[x * step] == kWarpNowhere) continue;
-    // A chroma sample lies between four luma samples; half the position of the first of them is its own.
-    add({x, flow_x[x * step] >> shift, flow_y[x * step] >> shift, surface[x], flow_u[x * step]}, plane_stride);
-  }
-  n_plain_ = column_.size();
+  find_plain(y, plane_stride);
+  n_plain_ = n_found_;
   for (const Point& point : candidates_) add_edge(point, plane_stride);
 }
 
-void RowCarrier::add(const Point& point, ptrdiff_t plane_stride) {
-  const int near_x = floor_of(point.x_64 + kWarpPhases / 2), near_y = floor_of(point.y_64 + kWarpPhases / 2);
-  if (near_x < 0 || near_y < 0 || near_x >= before_.u.width() || near_y >= before_.u.height()) return;
-  const int x = floor_of(point.x_64), y = floor_of(point.y_64);
-  const bool is_plain = before_.smooth.row(std::max(0, y))[std::max(0, x)] != 0 &&
-                        before_.surface.row(near_y)[near_x] == point.surface &&
-                        same_depth(before_.u.row(near_y)[near_x], point.u);
-  if (!is_plain) return candidates_.push_back(point);
-  add_place(point, static_cast<int32_t>((y - kWarpTapsBefore) * plane_stride + x - kWarpTapsBefore));
+// What is not plain, but inside the picture, becomes a candidate.
+void RowCarrier::find_plain(int y, ptrdiff_t plane_stride) {
+  const int step = is_chroma_ ? 2 : 1, shift = is_chroma_ ? 1 : 0, width = now_.u.width();
+  const int width_before = before_.u.width(), height_before = before_.u.height();
+  const int32_t *flow_x = flow_.x_64.row(y * step), *flow_y = flow_.y_64.row(y * step);
+  const float* flow_u = flow_.u_before.row(y * step);
+  const uint32_t* surface = now_.surface.row(y);
+  size_t n = 0;  // no member: stores through bytes may alias those
+  for (int column = 0; column < width; ++column) {
+    if (flow_x[column * step] == kWarpNowhere) continue;
+    // A chroma sample lies between four luma samples; half the position of the first of them is its own.
+    const int x_64 = flow_x[column * step] >> shift, y_64 = flow_y[column * step] >> shift;
+    const int near_x = floor_of(x_64 + kWarpPhases / 2), near_y = floor_of(y_64 + kWarpPhases / 2);
+    if (near_x < 0 || near_y < 0 || near_x >= width_before || near_y >= height_before) continue;
+    const int at_x = floor_of(x_64), at_y = floor_of(y_64);
+    const float u = flow_u[column * step];
+    const bool is_plain = before_.smooth.row(std::max(0, at_y))[std::max(0, at_x)] != 0 &&
+                          before_.surface.row(near_y)[near_x] == surface[column] &&
+                          same_depth(before_.u.row(near_y)[near_x], u);
+    if (!is_plain) {
+      candidates_.push_back({column, x_64, y_64, surface[column], u});
+      continue;
+    }
+    offset_[n] = static_cast<int32_t>((at_y - kWarpTapsBefore) * plane_stride + at_x - kWarpTapsBefore);
+    phase_x_[n] = static_cast<uint8_t>(phase_of(x_64));
+    phase_y_[n] = static_cast<uint8_t>(phase_of(y_64));
+    column_[n] = column;
+    ++n;
+  }
+  n_found_ = n;
 }
 
 void RowCarrier::add_place(const Point& point, int32_t offset) {
-  offset_.push_back(offset);
-  phase_x_.push_back(static_cast<uint8_t>(phase_of(point.x_64)));
-  phase_y_.push_back(static_cast<uint8_t>(phase_of(point.y_64)));
-  column_.push_back(point.column);
+  offset_[n_found_] = offset;
+  phase_x_[n_found_] = static_cast<uint8_t>(phase_of(point.x_64));
+  phase_y_[n_found_] = static_cast<uint8_t>(phase_of(point.y_64));
+  column_[n_found_] = point.column;
+  ++n_found_;
 }
 
 // Only where one of the four nearest samples, with some weight, shows what is looked for.
@@ -132,7 +147,7 @@ void RowCarrier::cut_patches(const BorderedPlane& plane) {
 }
 
 void RowCarrier::fetch(const BorderedPlane& plane, int16_t* out) {
-  const size_t n = column_.size(), n_edges = n - n_plain_;
+  const size_t n = n_found_, n_edges = n - n_plain_;
   picked_.resize(n);
   const auto filter = [&](const int16_t* samples, ptrdiff_t stride, size_t first, size_t count) {
     kernels_.warp.filter_points(samples, stride, kWarpFilter.data(), offset_.data() + first, phase_x_.data() + first,

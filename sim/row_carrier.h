@@ -29,7 +29,7 @@ class RowCarrier {
   // Writes the samples that were found at their columns of `out`; the others are left alone.
   void fetch(const BorderedPlane& plane, int16_t* out);
 
-  size_t found() const { return column_.size(); }
+  size_t found() const { return n_found_; }
 
  private:
   // What a sample looks for in the frame before, and where, in 1/64.
@@ -39,7 +39,7 @@ class RowCarrier {
     float u;
   };
 
-  void add(const Point& point, ptrdiff_t plane_stride);
+  void find_plain(int y, ptrdiff_t plane_stride);
   void add_place(const Point& point, int32_t offset);
   void add_edge(const Point& point, ptrdiff_t plane_stride);
   bool shows(int x, int y, const Point& point) const;
@@ -53,11 +53,11 @@ class RowCarrier {
   bool is_chroma_;
   const Kernels& kernels_;
 
-  // Of all points: plain ones first, then those near an edge.
+  // Of all points, the first n_found_: plain ones first, then those near an edge. At most one a column.
   std::vector<int32_t> offset_;  // of tap (-2, -2) in the plane; near an edge in the patches
   std::vector<uint8_t> phase_x_, phase_y_;
   std::vector<int> column_;
-  size_t n_plain_ = 0;
+  size_t n_plain_ = 0, n_found_ = 0;
 
   // Of points near an edge.
   std::vector<Point> candidates_, edge_points_;
