@@ -1,0 +1,214 @@
+// What a frame costs the client, on one core, by CPU time: drawing L, predicting the picture, unpacking, decoding,
+// adding. And what the prediction takes of the server's frame.
+//   client_cost SCENE [SPLIT] [WIDTH] [HEIGHT] [FRAMES] [QUANTIZER]     SCENE: a built-in name or a model file
+// The client's stages run here one by one, on what a server sent; their picture must be the server's, bit for bit.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/peers/scene_shots.h"
+#include "raster/sample_pattern.h"
+#include "sim/client.h"
+#include "sim/difference.h"
+#include "sim/frame420.h"
+#include "sim/model_prediction.h"
+#include "sim/packet.h"
+#include "sim/picture_packing.h"
+#include "sim/server.h"
+#include "sim/signed_composite.h"
+
+namespace {
+
+using namespace pac;
+using bench::cpu_ms;
+using bench::need;
+
+enum Stage { kDraw, kHash, kToYcc, kPredict, kUnpack, kDecode, kKeep, kAdd, kStages };
+constexpr const char* kStageNames[kStages] = {
+    "draw L, depth and ids", "check the hash of L", "L to 4:2:0", "predict the picture", "unpack",
+    "decode MPEG-1",         "keep the difference", "add to L"};
+
+// The decoder of sim/assisted_video.cpp taken apart: model prediction of full differences.
+class StagedClient {
+ public:
+  StagedClient(std::span<const uint8_t> session, const sim::SessionMessage& message)
+      : message_(message),
+        model_(need(sim::parse_model(message.model), "model")),
+        renderer_(need(raster::Renderer::create(message.width, message.height, {.threads = 1}), "renderer")),
+        packets_(sim::transforms_of(model_)),
+        predictor_(message.width, message.height, sim::surfaces_of(model_), sample().x / 256.0, sample().y / 256.0,
+                   best_isa(), sim::movers_of(model_)),
+        packer_(message.width, message.height),
+        decoder_(decoder_options(), best_isa()),
+        low_(message.width, message.height),
+        shown_(message.width, message.height),
+        depth_(message.width, message.height),
+        id_(message.width, message.height),
+        base_(message.width, message.height),
+        session_bytes_(session.size()) {}
+  StagedClient(const StagedClient&) = delete;
+  StagedClient& operator=(const StagedClient&) = delete;
+
+  // ms of each stage.
+  std::vector<double> receive(const Bytes& bytes) {
+    std::vector<double> ms(kStages, 0);
+    const auto packet = need(packets_.read(bytes), "packet");
+    double last = cpu_ms();
+    const auto done = [&](Stage stage) {
+      const double now = cpu_ms();
+      ms[stage] += now - last;
+      last = now;
+    };
+    check(sim::move_objects(packet.objects, model_), "objects");
+    check(renderer_.render(model_, packet.camera, message_.low, {low_.view(), depth_.view(), id_.view()}), "L");
+    done(kDraw);
+    hash_ ^= sim::image_hash(low_.view());
+    done(kHash);
+    sim::frame420_from_rgb(low_.view(), base_);
+    done(kToYcc);
+    const bool is_key = (packet.difference[0] & 1) != 0, is_packed = (packet.difference[0] & 16) != 0;
+    if (is_key) predictor_.forget();
+    reference_ = &predictor_.reference(base_, depth_.view(), id_.view(), packet.camera, packet.objects);
+    done(kPredict);
+    std::span<const uint8_t> picture = packet.difference.subspan(1);
+    if (is_packed) {
+      unpacked_.clear();
+      check(packer_.unpack(picture, is_key, predictor_.surface(), unpacked_), "unpack");
+      picture = unpacked_;
+    } else if (is_key) {
+      packer_.forget();
+    }
+    done(kUnpack);
+    decoder_.feed(picture);
+    decoder_.end_picture();
+    const mpeg1::DecodedPicture* decoded = need(decoder_.next(), "decode");
+    done(kDecode);
+    predictor_.keep(decoded->view.y, decoded->view.cb, decoded->view.cr, base_);
+    done(kKeep);
+    sim::composite_signed(low_.view(), predictor_.difference(0), predictor_.difference(1), predictor_.difference(2),
+                          shown_.view());
+    done(kAdd);
+    return ms;
+  }
+
+  const RgbImage& shown() const { return shown_; }
+  uint64_t session_bytes() const { return session_bytes_; }
+
+ private:
+  template <class T>
+  static void check(const Result<T>& result, const char* what) {
+    if (result.ok()) return;
+    std::fprintf(stderr, "client_cost: %s: %s\n", what, result.failure().text);
+    std::exit(1);
+  }
+  raster::SampleOffset sample() const { return raster::sample_pattern(message_.low.samples)[0]; }
+  mpeg1::DecoderOptions decoder_options() {
+    mpeg1::DecoderOptions options;
+    options.low_delay = true;
+    options.reference = [](void* context, const mpeg1::PictureHeader&, const mpeg1::FrameView&) {
+      return static_cast<const StagedClient*>(context)->reference_;
+    };
+    options.reference_context = this;
+    return options;
+  }
+
+  sim::SessionMessage message_;
+  raster::Scene model_;
+  raster::Renderer renderer_;
+  sim::PacketReader packets_;
+  sim::ModelPredictor predictor_;
+  sim::PicturePacker packer_;
+  mpeg1::Decoder decoder_;
+  RgbImage low_, shown_;
+  DepthImage depth_;
+  IdImage id_;
+  Frame420 base_;
+  const Frame420* reference_ = nullptr;
+  Bytes unpacked_;
+  uint64_t hash_ = 0, session_bytes_;
+};
+
+void report(const std::vector<std::vector<double>>& frames, double server_ms, const std::vector<uint64_t>& bytes) {
+  std::printf("%-24s %9s %9s %9s\n", "ms of one core", "first", "others", "worst");
+  double first_sum = 0, mean_sum = 0, worst_frame = 0, predict = 0;
+  for (size_t stage = 0; stage < kStages; ++stage) {
+    double sum = 0, worst = 0;
+    for (size_t i = 1; i < frames.size(); ++i) {
+      sum += frames[i][stage];
+      worst = std::fmax(worst, frames[i][stage]);
+    }
+    const double mean = sum / static_cast<double>(frames.size() - 1);
+    std::printf("%-24s %9.2f %9.2f %9.2f\n", kStageNames[stage], frames[0][stage], mean, worst);
+    first_sum += frames[0][stage];
+    mean_sum += mean;
+    if (stage == kPredict || stage == kKeep) predict += mean;
+  }
+  for (size_t i = 1; i < frames.size(); ++i) {
+    double sum = 0;
+    for (const double ms : frames[i]) sum += ms;
+    worst_frame = std::fmax(worst_frame, sum);
+  }
+  std::printf("%-24s %9.2f %9.2f %9.2f\n", "the whole client", first_sum, mean_sum, worst_frame);
+  std::printf("%.1f frames a second of one core on the mean of all but the first\n", 1e3 / mean_sum);
+  uint64_t total = 0;
+  for (size_t i = 1; i < bytes.size(); ++i) total += bytes[i];
+  std::printf("first packet %llu bytes, others %llu on the mean\n", static_cast<unsigned long long>(bytes[0]),
+              static_cast<unsigned long long>(total / (bytes.size() - 1)));
+  std::printf("server's frame %.2f ms (H, L, code, without the first); prediction %.2f ms: %.1f %% of it\n", server_ms,
+              predict, 100 * predict / server_ms);
+}
+
+int number(int argc, char** argv, int place, int fallback) {
+  return argc > place ? std::atoi(argv[place]) : fallback;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: client_cost SCENE [SPLIT] [WIDTH] [HEIGHT] [FRAMES] [QUANTIZER]\n");
+    return 2;
+  }
+  bench::NamedScene scene = bench::load_scene(argv[1]);
+  const std::string split_name = argc > 2 ? argv[2] : scene.set.default_split;
+  const int width = number(argc, argv, 3, 1280), height = number(argc, argv, 4, 720);
+  const int frames = number(argc, argv, 5, 24);
+  if (width < 1 || height < 1 || frames < 2) {
+    std::fprintf(stderr, "client_cost: sides are above 0, frames above 1\n");
+    return 2;
+  }
+  sim::ServerOptions options;
+  options.width = width;
+  options.height = height;
+  options.codec = sim::Codec::mpeg1;
+  options.video.quantizer_scale = number(argc, argv, 6, 10);
+  options.threads = 1;
+  const sim::Split split = need(sim::make_split(split_name, scene.set), "split");
+  sim::Server server = need(sim::Server::create(scene.set, split, options), "server");
+  const Bytes session = server.session();
+  StagedClient client(session, need(sim::read_session_message(session), "session"));
+  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  std::vector<std::vector<double>> ms;
+  std::vector<uint64_t> bytes;
+  double server_ms = 0;
+  for (int i = 0; i < frames; ++i) {
+    const double begin = cpu_ms();
+    const Bytes packet = need(server.frame(static_cast<uint32_t>(i), scene.camera(i, aspect)), "frame");
+    if (i > 0) server_ms += (cpu_ms() - begin) / (frames - 1);
+    bytes.push_back(packet.size());
+    ms.push_back(client.receive(packet));
+    if (sim::image_hash(client.shown().view()) != sim::image_hash(server.last_frame().composite.view())) {
+      std::fprintf(stderr, "client_cost: frame %d is not the server's\n", i);
+      return 1;
+    }
+  }
+  std::printf("%s, split %s, %d x %d, %d frames, quantizer %.0f, %s; resident %llu bytes\n", argv[1],
+              split.name.c_str(), width, height, frames, options.video.quantizer_scale, isa_name(best_isa()),
+              static_cast<unsigned long long>(client.session_bytes()));
+  report(ms, server_ms, bytes);
+  std::printf("last picture's hash %016llx\n", static_cast<unsigned long long>(sim::image_hash(client.shown().view())));
+  return 0;
+}
