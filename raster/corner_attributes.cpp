@@ -128,6 +128,36 @@ FaceNormal unit_normal(const FaceNormal& normal) {
   return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
 }
 
+// The cross product in single precision and, for each component, the sum of the magnitudes of its two terms, of which
+// it is off by less than 2^-21 times as much: differences, products and their difference are each off by 2^-24. Where
+// its dot product with a normal exceeds 2^-16 of such magnitudes it has the sign of that with the face's normal, and is
+// as far from 0 as is_on_seen_side() asks, up to what rounding does to either.
+bool keeps_own_normals(const Vertex* const vertices[3], bool front) {
+  float e1[3], e2[3], cross[3], size[3];
+  for (int c = 0; c < 3; ++c) {
+    e1[c] = vertices[1]->position[c] - vertices[0]->position[c];
+    e2[c] = vertices[2]->position[c] - vertices[0]->position[c];
+  }
+  constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
+  for (int c = 0; c < 3; ++c) {
+    const float p = e1[kNext[c]] * e2[kLast[c]], q = e1[kLast[c]] * e2[kNext[c]];
+    cross[c] = front ? p - q : q - p;
+    size[c] = std::fabs(p) + std::fabs(q);
+  }
+  bool all = true;
+  for (int i = 0; i < 3; ++i) {
+    const float* const n = vertices[i]->normal;
+    const float x = std::fabs(n[0]), y = std::fabs(n[1]), z = std::fabs(n[2]);
+    const float along = (n[0] * cross[0] + n[1] * cross[1]) + n[2] * cross[2];
+    const float magnitude = (x * size[0] + y * size[1]) + z * size[2];
+    const float squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
+    // False for NaN. The first four: own_normal() gives these components and calls them usable.
+    all = all && x <= 0x1p40f && y <= 0x1p40f && z <= 0x1p40f && squared >= 0x1p-100f && magnitude <= 0x1p100f &&
+          along >= 0x1p-80f && along >= 0x1p-16f * magnitude;
+  }
+  return all;
+}
+
 void light_points(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]) {
   alignas(32) float normal[3][kBatchLanes], position[3][kBatchLanes], color[3][kBatchLanes], specular[3][kBatchLanes];
   const int n_groups = (n + 7) / 8;
@@ -211,6 +241,37 @@ void write_color_record(const Surface& surface, const Vertex* const vertices[3],
     record[3 * c + 1] = static_cast<float>(colors[1][c]) * surface.mean[c] - a0;
     record[3 * c + 2] = static_cast<float>(colors[2][c]) * surface.mean[c] - a0;
   }
+}
+
+void write_lit_record(const float* const lit[3], const int order[3], float record[9]) {
+  const float *const corner0 = lit[order[0]], *const corner1 = lit[order[1]], *const corner2 = lit[order[2]];
+  for (int c = 0; c < 3; ++c) {
+    const float a0 = corner0[c] + corner0[c + 3];
+    record[3 * c] = a0;
+    record[3 * c + 1] = (corner1[c] + corner1[c + 3]) - a0;
+    record[3 * c + 2] = (corner2[c] + corner2[c + 3]) - a0;
+  }
+}
+
+bool write_normal_record(const Vertex* const vertices[3], const int order[3], float record[27]) {
+  const Vertex* const v[3] = {vertices[order[0]], vertices[order[1]], vertices[order[2]]};
+  bool bounded = true;
+  for (int c = 0; c < 3; ++c) {
+    const auto color = static_cast<float>(v[0]->color[c]);
+    const float normal = v[0]->normal[c], position = v[0]->position[c];
+    bounded = bounded && std::fabs(position) <= 0x1p60f;
+    float* const at[3] = {record + 3 * c, record + 9 + 3 * c, record + 18 + 3 * c};
+    at[0][0] = color;
+    at[1][0] = normal;
+    at[2][0] = position;
+    for (int i = 1; i < 3; ++i) {
+      bounded = bounded && std::fabs(v[i]->position[c]) <= 0x1p60f;
+      at[0][i] = static_cast<float>(v[i]->color[c]) - color;
+      at[1][i] = v[i]->normal[c] - normal;
+      at[2][i] = v[i]->position[c] - position;
+    }
+  }
+  return bounded;
 }
 
 void write_whole_record(const CornerAttributes& corners, const int order[3], int n_attributes, float* record) {

@@ -156,24 +156,28 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
   chunk.normal_of = UINT32_MAX;
   chunk.stats = {};
   chunk.result = {};
-  for (size_t i = first_face; i < last_face && chunk.result.ok(); ++i)
-    process_face(input, static_cast<uint32_t>(i), chunk);
+  const Mesh& mesh = *input.mesh;
+  const size_t n_materials = input.scene->materials.size();
+  for (size_t i = first_face; i < last_face; ++i) {
+    const auto number = static_cast<uint32_t>(i);
+    const Face& face = mesh.faces[i];
+    if (!is_valid(mesh, face, n_materials)) {
+      chunk.result = check_face(mesh, number, n_materials);
+      break;
+    }
+    if (face.count == 3)
+      process_triangle(input, number, mesh.indices.data() + face.first, chunk);
+    else
+      process_polygon(input, number, chunk);
+  }
   flush(input, chunk);
   fill_bins(chunk);
 }
 
-void DrawList::process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk) {
+void DrawList::process_polygon(const FrameInput& input, uint32_t face_number, Chunk& chunk) {
   const Mesh& mesh = *input.mesh;
   const Face& face = mesh.faces[face_number];
-  if (!is_valid(mesh, face, input.scene->materials.size())) {
-    chunk.result = check_face(mesh, face_number, input.scene->materials.size());
-    return;
-  }
   const uint32_t* indices = mesh.indices.data() + face.first;
-  if (face.count == 3) {
-    process_triangle(input, face_number, indices, chunk);
-    return;
-  }
   if (is_unseen(face, indices, (*input.surfaces[0])[face.material].drop_back_faces)) {
     chunk.stats.triangles_submitted += face.count - 2;
     return;
@@ -230,8 +234,8 @@ const FaceNormal& DrawList::normal_of(const Mesh& mesh, uint32_t face_number, Ch
 
 // Trivial rejections. What needs no clipping waits until there is a group; groups and clipped triangles keep the order
 // of the scene.
-void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3],
-                                Chunk& chunk) {
+inline void DrawList::process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3],
+                                       Chunk& chunk) {
   ++chunk.stats.triangles_submitted;
   const uint32_t codes[3] = {outcodes_[vertices[0]], outcodes_[vertices[1]], outcodes_[vertices[2]]};
   const uint32_t any = codes[0] | codes[1] | codes[2], all = codes[0] & codes[1] & codes[2];
@@ -269,9 +273,66 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   for (uint32_t left = masks.drawn; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const PendingTriangle& triangle = chunk.pending[lane];
-    fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
-    store(input, candidate, nullptr, (masks.front >> lane & 1) != 0, chunk, *stored++);
+    const bool front = (masks.front >> lane & 1) != 0;
+    if (attach_plain(input, triangle, front, chunk.attributes, *stored)) {
+      list_in_tiles(input, *stored++, chunk);
+    } else {
+      fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
+      store(input, candidate, nullptr, front, chunk, *stored++);
+    }
   }
+}
+
+// What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
+// False: it does, and the triangle is not complete.
+bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, Arena<float>& arena,
+                            RasterTriangle& triangle) const {
+  if (input.previous_clip != nullptr) return false;
+  const uint32_t material = input.mesh->faces[pending.face].material;
+  triangle.id = pending.face + 1;
+  for (int r = 0; r < 2; ++r) {
+    const bool drawn = input.surfaces[r] != nullptr;
+    triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
+    triangle.attributes[r] = nullptr;
+    if (!drawn || !input.wants_attributes) continue;
+    triangle.attributes[r] = plain_record(input, r, pending, front, arena);
+    if (triangle.attributes[r] == nullptr) return false;
+  }
+  triangle.attributes[2] = nullptr;
+  return true;
+}
+
+// The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
+const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
+                                    Arena<float>& arena) const {
+  const Mesh& mesh = *input.mesh;
+  const Face& face = mesh.faces[pending.face];
+  const Surface& surface = (*input.surfaces[rendering])[face.material];
+  const bool colors_alone = surface.layout.count == 3;
+  const bool by_sample = surface.lit == Surface::Lit::per_sample && surface.layout.count == 9 &&
+                         surface.layout.normal == 3 && surface.layout.position == 6;
+  if (!colors_alone && !by_sample) return nullptr;
+  const Vertex* const vertices[3] = {&mesh.vertices[pending.vertices[0]], &mesh.vertices[pending.vertices[1]],
+                                     &mesh.vertices[pending.vertices[2]]};
+  const int order[3] = {0, front ? 2 : 1, front ? 1 : 2};
+  if (surface.lit == Surface::Lit::no) {
+    float* const record = arena.allocate(9);
+    write_color_record(surface, vertices, order, record);
+    return record;
+  }
+  if (face.count != 3) return nullptr;
+  if (by_sample) {
+    if (!keeps_own_normals(vertices, front)) return nullptr;
+    float* const record = arena.allocate(27);
+    return write_normal_record(vertices, order, record) ? record : nullptr;
+  }
+  const float* lit[3];
+  for (int i = 0; i < 3; ++i) lit[i] = lit_[rendering].find(pending.vertices[i], face.material);
+  if (lit[0] == nullptr || lit[1] == nullptr || lit[2] == nullptr || !keeps_own_normals(vertices, front))
+    return nullptr;
+  float* const record = arena.allocate(9);
+  write_lit_record(lit, order, record);
+  return record;
 }
 
 void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes,
@@ -318,6 +379,10 @@ void DrawList::store(const FrameInput& input, const Candidate& candidate, const 
   triangle.attributes[0] = triangle.attributes[1] = triangle.attributes[2] = nullptr;
   triangle.state[0] = triangle.state[1] = 0;
   attach_attributes(input, candidate, corners, front, chunk.attributes, triangle);
+  list_in_tiles(input, triangle, chunk);
+}
+
+void DrawList::list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const {
   for_each_tile(triangle, tiles_x_, input.hull, [&](int tile) {
     chunk.pairs.push_back({static_cast<uint32_t>(tile), &triangle});
   });

@@ -105,7 +105,7 @@ class DrawList {
   };
   void transform(const FrameInput& input, ThreadPool& pool);
   void process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk);
-  void process_face(const FrameInput& input, uint32_t face_number, Chunk& chunk);
+  void process_polygon(const FrameInput& input, uint32_t face_number, Chunk& chunk);
   void process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk);
   void process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes, Chunk& chunk);
   void flush(const FrameInput& input, Chunk& chunk) const;
@@ -114,6 +114,11 @@ class DrawList {
   bool is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const;
   void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
                       Candidate& out) const;
+  bool attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, Arena<float>& arena,
+                    RasterTriangle& triangle) const;
+  const float* plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
+                            Arena<float>& arena) const;
+  void list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const;
   void fill_bins(Chunk& chunk) const;
 
   const FaceNormal& normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
