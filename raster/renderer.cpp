@@ -162,6 +162,7 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
     PAC_TRY(const ShadowScene* const cast, prepare_shadows(scene, *mesh, quality, r));
     PAC_CHECK(prepare_surfaces(scene, camera, quality, cast, surfaces[r]));
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
+    input.has_final_colors[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::has_final_colors);
   }
   auto stats = draw_list.build(frame, pool);
   if (!stats.ok()) return stats;

@@ -65,14 +65,24 @@ void TilePainter::write_first_sample(const PaintInput& input, const Area& area) 
 }
 
 void TilePainter::shade_first_sample(const PaintInput& input, const Area& area) {
+  const TileKernels& kernels = input.kernels->tile;
+  const SamplePosition origin = position(area, input.pattern[0]);
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
-  const int n_packs = input.kernels->tile.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
-  if (n_renderings == 2) std::copy_n(packs_, n_packs, shared_packs_);
+  bool by_packs[2] = {false, false};
   for (int r = 0; r < n_renderings; ++r) {
-    if (!wants_color(input, r)) continue;
-    if (r == 1) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
+    by_packs[r] = wants_color(input, r) && !input.has_final_colors[r];
+    if (wants_color(input, r) && input.has_final_colors[r])
+      kernels.add_colors(ids_, area.width, area.height, triangles_.data(), r, origin, input.background, sums_[r]);
+  }
+  if (!by_packs[0] && !by_packs[1]) return;
+  const int n_packs = kernels.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
+  const bool shared = by_packs[0] && by_packs[1];
+  if (shared) std::copy_n(packs_, n_packs, shared_packs_);
+  for (int r = 0; r < n_renderings; ++r) {
+    if (!by_packs[r]) continue;
+    if (r == 1 && shared) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
     n_packs_ = n_packs;
-    shade(input, {r, 0, 1, position(area, input.pattern[0]), false}, sums_[r]);
+    shade(input, {r, 0, 1, origin, false}, sums_[r]);
   }
 }
 

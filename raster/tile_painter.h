@@ -21,6 +21,7 @@ struct PaintInput {
   int width, height;
   const std::vector<Surface>* surfaces[2];  // [1] null: one rendering
   int shading_samples[2];                   // of each rendering, as RenderQuality
+  bool has_final_colors[2];                 // of each rendering: BatchShader::has_final_colors() of all its surfaces
   bool has_transparent;                     // some material's alpha is not opaque
   uint8_t background[3];
   RgbView color[2];

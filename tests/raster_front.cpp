@@ -2,6 +2,7 @@
 // change nothing that can be seen.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
@@ -288,6 +289,39 @@ TEST_CASE("accumulate_lanes: samples by themselves add what their packs add") {
       table->tile.accumulate_lanes(lanes.samples.data(), static_cast<int>(lanes.samples.size()), weighted,
                                    single.data(), part(single, textured, 3), part(single, specular, 6), background,
                                    actual.data());
+      REQUIRE(expected == actual);
+    }
+  }
+}
+
+TEST_CASE("add_colors: adds what packs, interpolated and accumulated, add; groups of one triangle and of eight") {
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    Random random(61);
+    const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+    const uint8_t background[3] = {10, 200, 255};
+    const SamplePosition origin{128, 128};
+    for (uint32_t round = 0; round < 60; ++round) {
+      const PackedTriangles input = random_packs(round, 1);
+      std::vector<const RasterTriangle*> list;
+      for (const RasterTriangle& t : input.triangles) list.push_back(&t);
+      alignas(32) uint32_t ids[kTilePixels];
+      const uint32_t kinds = 1 + round % 17, run = 1 + random.bits() % 9;
+      for (uint32_t i = 0, id = 0; i < kTilePixels; ++i) ids[i] = id = i % run == 0 ? random.bits() % kinds : id;
+      const int width = 1 + static_cast<int>(random.bits() % kTileSize), height = 32 - static_cast<int>(round % 4);
+      const int rendering = static_cast<int>(round % 2);
+      std::vector<uint16_t> expected(3 * kTilePixels, 1000), actual = expected;
+      std::vector<LanePack> packs(kTilePixels);
+      const int n = scalar.collect_packs(ids, width, height, list.data(), packs.data());
+      std::vector<float> rows(3 * kBatchLanes);
+      for (int first = 0; first < n; first += kBatchPacks) {
+        const int count = std::min(kBatchPacks, n - first);
+        scalar.interpolate(packs.data() + first, count, origin, {rendering, 3, rows.data(), nullptr, 0, 0, 0, 0});
+        scalar.accumulate(packs.data() + first, count, false, rows.data(), nullptr, nullptr, background,
+                          expected.data());
+      }
+      table->tile.add_colors(ids, width, height, list.data(), rendering, origin, background, actual.data());
       REQUIRE(expected == actual);
     }
   }

@@ -268,6 +268,12 @@ struct TileKernels {
   void (*accumulate_lanes)(const LaneSample* samples, int n, bool weighted, const float* color, const float* texels,
                            const float* specular, const uint8_t background[3], uint16_t* sums);
 
+  // collect_packs(), interpolate() of attributes 0..2 and accumulate() of them as final colors, in one: the colors of
+  // all samples in the ids are added to the sums. Groups of eight are read whole. Records of attributes as for
+  // interpolate_lanes().
+  void (*add_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
+                     SamplePosition origin, const uint8_t background[3], uint16_t* sums);
+
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);
 };

@@ -249,6 +249,22 @@ void accumulate_lanes(const LaneSample* samples, int n, bool weighted, const flo
                     specular, background, sums);
 }
 
+void add_colors(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
+                SamplePosition origin, const uint8_t background[3], uint16_t* sums) {
+  float rows[3 * kBatchLanes];
+  const InterpolateTarget target{rendering, 3, rows, nullptr, 0, 0, 0, 0};
+  for (int py = 0; py < height; ++py)
+    for (int px = 0; px < (width + 7) / 8 * 8; ++px) {
+      const uint32_t id = ids[py * kTileSize + px];
+      if (id == 0) continue;
+      const RasterTriangle& t = *triangles[id - 1];
+      const int k = px & 7;
+      const int32_t x = origin.x + 256 * (px - k) - t.x0, y = origin.y + 256 * py - t.y0;
+      interpolate_lane(t, edge(t, 1, x, y), edge(t, 2, x, y), k, target, 0);
+      accumulate_lane(0, py * kTileSize + px, 1, rows, nullptr, nullptr, background, sums);
+    }
+}
+
 void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
   for (int x = 0; x < width; ++x)
     for (int c = 0; c < 3; ++c) rgb[3 * x + c] = static_cast<uint8_t>(sums[c * kTileSize * kTileSize + x] >> shift);
@@ -268,6 +284,7 @@ void fill_tile_scalar(TileKernels& table) {
   table.blend = blend;
   table.accumulate = accumulate;
   table.accumulate_lanes = accumulate_lanes;
+  table.add_colors = add_colors;
   table.resolve_row = resolve_row;
 }
 

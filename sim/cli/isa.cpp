@@ -90,6 +90,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, blend),
     PAC_KERNEL(tile, accumulate),
     PAC_KERNEL(tile, accumulate_lanes),
+    PAC_KERNEL(tile, add_colors),
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
     PAC_KERNEL(warp, filter_points),
