@@ -35,10 +35,10 @@ class BatchShader {
   static bool shades_lanes(const Surface& surface) {
     return surface.maps == nullptr && surface.max_probes == 1 && surface.shadows == nullptr;
   }
-  // Attributes 0..2, interpolated, are the final colors.
+  // The attributes are colors alone and, interpolated, final: surfaces that differ may be shaded together.
   static bool has_final_colors(const Surface& surface) {
     return surface.lit != Surface::Lit::per_sample && !surface.textured && !surface.fogged && surface.maps == nullptr &&
-           surface.layout.specular < 0 && surface.alpha == AlphaMode::opaque;
+           surface.layout.count == 3 && surface.alpha == AlphaMode::opaque;
   }
   // Takes the samples whose opacity is below the cutoff off the packs' masks. The surface's alpha is AlphaMode::mask.
   void cut_out(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, LanePack* packs, int n);

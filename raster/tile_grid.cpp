@@ -21,8 +21,14 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   const SamplePosition corner{area.x * 256, area.y * 256};
   for (size_t i = 0; i < triangles_.size(); ++i)
     input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
-  if (wants_color(input, 0)) shade_grid(input, area, 0, first_sample);
-  if (input.surfaces[1] != nullptr && wants_color(input, 1)) shade_grid(input, area, 1, first_sample);
+  // The one whose shading leaves the packs as they are goes first.
+  const int first = input.has_final_colors[1] ? 1 : 0;
+  const int renderings[2] = {first, 1 - first};
+  const bool wanted[2] = {wants_color(input, 0), input.surfaces[1] != nullptr && wants_color(input, 1)};
+  if (wanted[0] && wanted[1] && input.shading_samples[0] == input.shading_samples[1])
+    return shade_grid(input, area, renderings, first_sample);
+  for (const int& rendering : renderings)
+    if (wanted[rendering]) shade_grid(input, area, {&rendering, 1}, first_sample);
 }
 
 // Every sample by itself; all at the pixel's center; or those of each quarter of the pixel at its center.
@@ -46,18 +52,30 @@ int TilePainter::list_groups(int shading_samples, int first_sample, ShadingGroup
   return 4;
 }
 
-void TilePainter::shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample) {
+// Renderings with the same shading_samples: what is seen is listed once for all of them.
+void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::span<const int> renderings,
+                             int first_sample) {
   ShadingGroup groups[kGridSamples];
-  const int shading_samples = input.shading_samples[rendering];
+  const int shading_samples = input.shading_samples[renderings[0]];
   const int n_groups = list_groups(shading_samples, first_sample, groups);
-  if (shading_samples == 0) return shade_each_sample(input, area, rendering, {groups, static_cast<size_t>(n_groups)});
+  if (shading_samples == 0) {
+    for (const int rendering : renderings)
+      shade_each_sample(input, area, rendering, {groups, static_cast<size_t>(n_groups)});
+    return;
+  }
   for (int row = 0; row < area.height; row += kGridRows)
     for (int i = 0; i < n_groups; ++i) {
       if (groups[i].samples == 0) continue;
-      n_packs_ = input.kernels->tile.collect_grid(grid_, groups[i].samples, row, std::min(row + kGridRows, area.height),
-                                                  area.width, triangles_.data(), packs_);
-      shade(input, {rendering, groups[i].number, shading_samples, position(area, groups[i].place), true},
-            sums_[rendering]);
+      const int n = input.kernels->tile.collect_grid(
+          grid_, groups[i].samples, row, std::min(row + kGridRows, area.height), area.width, triangles_.data(), packs_);
+      const bool keep = renderings.size() > 1 && !input.has_final_colors[renderings[0]];  // shade() uses them up
+      if (keep) std::copy_n(packs_, n, shared_packs_);
+      for (const int& rendering : renderings) {
+        if (keep && &rendering != renderings.data()) std::copy_n(shared_packs_, n, packs_);
+        n_packs_ = n;
+        shade(input, {rendering, groups[i].number, shading_samples, position(area, groups[i].place), true},
+              sums_[rendering]);
+      }
     }
 }
 
@@ -74,6 +92,13 @@ void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, i
     const int n_rows = std::min(kGridRows, area.height - row);
     split_by_sample(area, row, n_rows);
     for (size_t s = 0; s < samples.size(); ++s) {
+      if (input.has_final_colors[rendering]) {
+        const SamplePosition origin = position(area, samples[s].place);
+        input.kernels->tile.add_colors(sample_ids_[s], area.width, n_rows, triangles_.data(), rendering,
+                                       {origin.x, origin.y + 256 * row}, input.background,
+                                       sums_[rendering] + row * kTileSize);
+        continue;
+      }
       n_packs_ = input.kernels->tile.collect_packs(sample_ids_[s], area.width, n_rows, triangles_.data(), packs_);
       for (int i = 0; i < n_packs_; ++i) packs_[i].y = static_cast<uint8_t>(packs_[i].y + row);
       shade(input, pass(samples[s]), sums_[rendering]);

@@ -172,10 +172,12 @@ void TilePainter::rasterize_mask(const PaintInput& input, uint32_t number, const
   }
 }
 
-// Packs of one batch state together, in calls of up to kBatchPacks. Where triangles are small most packs have few
-// lanes: those are taken apart, and lanes of different triangles shaded together.
+// Packs of one batch state together, in calls of up to kBatchPacks; uses packs_ up, but not where colors are final:
+// then states do not matter. Where triangles are small most packs have few lanes: those are taken apart, and lanes of
+// different triangles shaded together.
 void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums) {
   const std::vector<Surface>& surfaces = *input.surfaces[pass.rendering];
+  const bool together = input.has_final_colors[pass.rendering];
   for (int left = n_packs_; left > 0;) {
     const uint32_t state = packs_[0].triangle->state[pass.rendering];
     const Surface& surface = surfaces[state];
@@ -184,7 +186,7 @@ void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t
     n_lanes_ = 0;
     for (int i = 0; i < left; ++i) {
       const LanePack& pack = packs_[i];
-      if (pack.triangle->state[pass.rendering] != state) {
+      if (!together && pack.triangle->state[pass.rendering] != state) {
         packs_[rest++] = pack;
       } else if (kLanes.of[pack.mask] <= few) {
         for (unsigned mask = pack.mask; mask != 0; mask &= mask - 1) {

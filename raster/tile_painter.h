@@ -53,7 +53,7 @@ class TilePainter {
   static SamplePosition position(const Area& area, SampleOffset offset);
   void shade_first_sample(const PaintInput& input, const Area& area);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);
-  void shade_grid(const PaintInput& input, const Area& area, int rendering, int first_sample);
+  void shade_grid(const PaintInput& input, const Area& area, std::span<const int> renderings, int first_sample);
   void shade_each_sample(const PaintInput& input, const Area& area, int rendering,
                          std::span<const ShadingGroup> samples);
   void split_by_sample(const Area& area, int first_row, int n_rows);
@@ -98,7 +98,7 @@ class TilePainter {
   SampleGrid grid_;
   // Room for the worst rows of a grid, see collect_grid().
   static constexpr int kGridRows = 8, kMostPacks = kGridRows * kTileSize * kGridSamples;
-  LanePack packs_[kMostPacks], batch_[kMostPacks], shared_packs_[kTilePixels];
+  LanePack packs_[kMostPacks], batch_[kMostPacks], shared_packs_[kMostPacks];
   int n_packs_ = 0;
   alignas(64) uint32_t sample_ids_[kGridSamples][kGridRows * kTileSize];
   LanePack whole_packs_[kTilePixels / 8];
