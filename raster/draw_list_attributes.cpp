@@ -1,0 +1,139 @@
+// What a triangle of the list carries for the shading: ids, states and records of attributes.
+#include <algorithm>
+
+#include "raster/corner_attributes.h"
+#include "raster/draw_list.h"
+
+namespace pac::raster {
+namespace {
+
+// Stores the renderings' attributes with the triangle. `front` exchanges corners 1 and 2, as setup_triangle did.
+// corners: null for a triangle that was not clipped.
+void attach_attributes(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners,
+                       bool front, Arena<float>& arena, RasterTriangle& triangle) {
+  const int order[3] = {0, front ? 2 : 1, front ? 1 : 2};
+  const auto write = [&](const CornerAttributes& attributes, int count) {
+    float* record = arena.allocate(3 * static_cast<size_t>(count));
+    if (corners == nullptr) {
+      write_whole_record(attributes, order, count, record);
+    } else {
+      const float* const weights[3] = {corners[order[0]]->weight, corners[order[1]]->weight, corners[order[2]]->weight};
+      write_record(attributes, weights, count, record);
+    }
+    return record;
+  };
+  for (int r = 0; r < 2; ++r) {
+    if (candidate.surfaces[r] == nullptr) continue;
+    const Surface& surface = *candidate.surfaces[r];
+    triangle.state[r] = surface.batch;
+    if (!input.wants_attributes) continue;
+    if (corners == nullptr && surface.lit == Surface::Lit::no && surface.layout.count == 3) {
+      float* record = arena.allocate(9);
+      write_color_record(surface, candidate.vertices, order, record);
+      triangle.attributes[r] = record;
+      continue;
+    }
+    CornerAttributes attributes;
+    corner_attributes(surface, input.kernels->tile, candidate.normal, candidate.vertices, candidate.lit[r],
+                      *candidate.first, front, attributes);
+    triangle.attributes[r] = write(attributes, surface.layout.count);
+  }
+  if (input.previous_clip == nullptr) return;
+  CornerAttributes previous;
+  for (int i = 0; i < 3; ++i) std::copy_n(candidate.previous[i], 4, previous.value[i]);
+  triangle.attributes[2] = write(previous, 4);
+}
+
+}  // namespace
+
+void DrawList::fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
+                              Candidate& out) const {
+  const Mesh& mesh = *input.mesh;
+  const Face& face = mesh.faces[face_number];
+  out.first = &mesh.vertices[mesh.indices[face.first]];
+  out.id = face_number + 1;
+  out.normal = {0, 0, 0};
+  for (int i = 0; i < 3; ++i) out.vertices[i] = &mesh.vertices[vertices[i]];
+  for (int r = 0; r < 2; ++r) {
+    out.surfaces[r] = nullptr;
+    if (input.surfaces[r] == nullptr) continue;
+    out.surfaces[r] = &(*input.surfaces[r])[face.material];
+    if (!input.wants_attributes) continue;
+    if (out.surfaces[r]->lit != Surface::Lit::no) out.normal = normal_of(mesh, face_number, chunk);
+    for (int i = 0; i < 3; ++i) out.lit[r][i] = lit_[r].find(vertices[i], face.material);
+  }
+  for (int i = 0; i < 3; ++i)
+    out.previous[i] = input.previous_clip != nullptr ? input.previous_clip + 4 * size_t{vertices[i]} : nullptr;
+}
+
+const FaceNormal& DrawList::normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const {
+  if (chunk.normal_of != face_number) {
+    chunk.normal = face_normal(mesh, mesh.faces[face_number]);
+    chunk.normal_of = face_number;
+  }
+  return chunk.normal;
+}
+
+// What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
+// False: it does, and the triangle is not complete.
+bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, Arena<float>& arena,
+                            RasterTriangle& triangle) const {
+  if (input.previous_clip != nullptr) return false;
+  const uint32_t material = input.mesh->faces[pending.face].material;
+  triangle.id = pending.face + 1;
+  for (int r = 0; r < 2; ++r) {
+    const bool drawn = input.surfaces[r] != nullptr;
+    triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
+    triangle.attributes[r] = nullptr;
+    if (!drawn || !input.wants_attributes) continue;
+    triangle.attributes[r] = plain_record(input, r, pending, front, arena);
+    if (triangle.attributes[r] == nullptr) return false;
+  }
+  triangle.attributes[2] = nullptr;
+  return true;
+}
+
+// The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
+const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
+                                    Arena<float>& arena) const {
+  const Mesh& mesh = *input.mesh;
+  const Face& face = mesh.faces[pending.face];
+  const Surface& surface = (*input.surfaces[rendering])[face.material];
+  const bool colors_alone = surface.layout.count == 3;
+  const bool by_sample = surface.lit == Surface::Lit::per_sample && surface.layout.count == 9 &&
+                         surface.layout.normal == 3 && surface.layout.position == 6;
+  if (!colors_alone && !by_sample) return nullptr;
+  const Vertex* const vertices[3] = {&mesh.vertices[pending.vertices[0]], &mesh.vertices[pending.vertices[1]],
+                                     &mesh.vertices[pending.vertices[2]]};
+  const int order[3] = {0, front ? 2 : 1, front ? 1 : 2};
+  if (surface.lit == Surface::Lit::no) {
+    float* const record = arena.allocate(9);
+    write_color_record(surface, vertices, order, record);
+    return record;
+  }
+  if (face.count != 3) return nullptr;
+  if (by_sample) {
+    if (!keeps_own_normals(vertices, front)) return nullptr;
+    float* const record = arena.allocate(27);
+    return write_normal_record(vertices, order, record) ? record : nullptr;
+  }
+  const float* lit[3];
+  for (int i = 0; i < 3; ++i) lit[i] = lit_[rendering].find(pending.vertices[i], face.material);
+  if (lit[0] == nullptr || lit[1] == nullptr || lit[2] == nullptr || !keeps_own_normals(vertices, front))
+    return nullptr;
+  float* const record = arena.allocate(9);
+  write_lit_record(lit, order, record);
+  return record;
+}
+
+// Completes a triangle that is set up and lists it in its tiles. corners: null for a triangle that was not clipped.
+void DrawList::store(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners, bool front,
+                     Chunk& chunk, RasterTriangle& triangle) const {
+  triangle.id = candidate.id;
+  triangle.attributes[0] = triangle.attributes[1] = triangle.attributes[2] = nullptr;
+  triangle.state[0] = triangle.state[1] = 0;
+  attach_attributes(input, candidate, corners, front, chunk.attributes, triangle);
+  list_in_tiles(input, triangle, chunk);
+}
+
+}  // namespace pac::raster
