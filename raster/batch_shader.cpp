@@ -147,6 +147,13 @@ ShadedBatch BatchShader::shade_lanes(const TileKernels& kernels, const Surface& 
   return finish({kernels, surface, pass, nullptr, (n + 7) / 8});
 }
 
+ShadedBatch BatchShader::shade_groups(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
+                                      const LanePack* packs, int n, const uint32_t* ids,
+                                      const RasterTriangle* const* triangles) {
+  kernels.interpolate_groups(packs, n, ids, triangles, pass.origin, interpolate_target(surface, pass));
+  return finish({kernels, surface, pass, nullptr, n});
+}
+
 // From interpolated attributes to colors.
 ShadedBatch BatchShader::finish(const Batch& batch) {
   const Surface& surface = batch.surface;

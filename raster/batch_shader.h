@@ -31,6 +31,9 @@ class BatchShader {
   // The same for n <= kBatchLanes samples of any triangles with `surface`, where shades_lanes(surface).
   ShadedBatch shade_lanes(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
                           const LaneSample* samples, int n);
+  // The same for packs of collect_groups(); ids and triangles: what they were collected from.
+  ShadedBatch shade_groups(const TileKernels& kernels, const Surface& surface, const ShadePass& pass,
+                           const LanePack* packs, int n, const uint32_t* ids, const RasterTriangle* const* triangles);
   // Nothing that the surface asks for needs to know how samples are packed.
   static bool shades_lanes(const Surface& surface) {
     return surface.maps == nullptr && surface.max_probes == 1 && surface.shadows == nullptr;

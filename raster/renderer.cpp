@@ -163,6 +163,10 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
     PAC_CHECK(prepare_surfaces(scene, camera, quality, cast, surfaces[r]));
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
     input.has_final_colors[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::has_final_colors);
+    input.shades_lanes[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::shades_lanes);
+    input.has_one_batch[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), [&](const Surface& surface) {
+      return surface.batch == surfaces[r].front().batch;
+    });
   }
   auto stats = draw_list.build(frame, pool);
   if (!stats.ok()) return stats;

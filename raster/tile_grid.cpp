@@ -92,16 +92,9 @@ void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, i
     const int n_rows = std::min(kGridRows, area.height - row);
     split_by_sample(area, row, n_rows);
     for (size_t s = 0; s < samples.size(); ++s) {
-      if (input.has_final_colors[rendering]) {
-        const SamplePosition origin = position(area, samples[s].place);
-        input.kernels->tile.add_colors(sample_ids_[s], area.width, n_rows, triangles_.data(), rendering,
-                                       {origin.x, origin.y + 256 * row}, input.background,
-                                       sums_[rendering] + row * kTileSize);
-        continue;
-      }
-      n_packs_ = input.kernels->tile.collect_packs(sample_ids_[s], area.width, n_rows, triangles_.data(), packs_);
-      for (int i = 0; i < n_packs_; ++i) packs_[i].y = static_cast<uint8_t>(packs_[i].y + row);
-      shade(input, pass(samples[s]), sums_[rendering]);
+      ShadePass rows = pass(samples[s]);
+      rows.origin.y += 256 * row;
+      shade_ids(input, rows, sample_ids_[s], area.width, n_rows, sums_[rendering] + row * kTileSize);
     }
   }
   put_whole_groups_back();

@@ -28,7 +28,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
   const size_t n_samples = input.pattern.size();
   for (int r = 0; r < n_renderings; ++r)
-    for (int c = 0; c < 3; ++c)
+    for (int c = 0; c < 3 && !paints_directly(input, r); ++c)
       std::fill_n(sums_[r] + c * kTilePixels, kTilePixels,
                   static_cast<uint16_t>(n_samples * input.background[c] + n_samples / 2));
   if (has_masked_ || has_blended_) {
@@ -38,7 +38,8 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   write_first_sample(input, area);
   if (!wants_color(input, 0) && !wants_color(input, 1)) return;
   if (n_samples == 1) {
-    shade_first_sample(input, area);
+    for (int r = 0; r < n_renderings; ++r)
+      if (wants_color(input, r)) shade_first_sample(input, area, r);
   } else {
     for (size_t first = 0; first < n_samples; first += kGridSamples)
       paint_grid(input, area, input.pattern.subspan(first, std::min<size_t>(kGridSamples, n_samples - first)),
@@ -64,26 +65,35 @@ void TilePainter::write_first_sample(const PaintInput& input, const Area& area) 
   if (!input.previous.empty()) write_previous(input, area, origin);
 }
 
-void TilePainter::shade_first_sample(const PaintInput& input, const Area& area) {
-  const TileKernels& kernels = input.kernels->tile;
+// One sample a pixel whose colors need nothing but interpolation: they go to the target without sums.
+bool TilePainter::paints_directly(const PaintInput& input, int rendering) const {
+  return input.pattern.size() == 1 && input.has_final_colors[rendering] && !has_masked_ && !has_blended_;
+}
+
+void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, int rendering) {
   const SamplePosition origin = position(area, input.pattern[0]);
-  const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
-  bool by_packs[2] = {false, false};
-  for (int r = 0; r < n_renderings; ++r) {
-    by_packs[r] = wants_color(input, r) && !input.has_final_colors[r];
-    if (wants_color(input, r) && input.has_final_colors[r])
-      kernels.add_colors(ids_, area.width, area.height, triangles_.data(), r, origin, input.background, sums_[r]);
+  if (!paints_directly(input, rendering))
+    return shade_ids(input, {rendering, 0, 1, origin, false}, ids_, area.width, area.height, sums_[rendering]);
+  const RgbView& target = input.color[rendering];
+  const bool has_target = !target.empty();
+  input.kernels->tile.paint_colors(ids_, area.width, area.height, triangles_.data(), rendering, origin,
+                                   input.background, has_target ? target.pixel(area.x, area.y) : rgb_[rendering],
+                                   has_target ? target.stride : ptrdiff_t{3 * kTileSize});
+}
+
+// What one sample a pixel sees, rows of `ids` from the pass's origin down, to the sums of the same rows.
+void TilePainter::shade_ids(const PaintInput& input, const ShadePass& pass, const uint32_t* ids, int width, int height,
+                            uint16_t* sums) {
+  const TileKernels& kernels = input.kernels->tile;
+  if (input.has_final_colors[pass.rendering]) {
+    kernels.add_colors(ids, width, height, triangles_.data(), pass.rendering, pass.origin, input.background, sums);
+    return;
   }
-  if (!by_packs[0] && !by_packs[1]) return;
-  const int n_packs = kernels.collect_packs(ids_, area.width, area.height, triangles_.data(), packs_);
-  const bool shared = by_packs[0] && by_packs[1];
-  if (shared) std::copy_n(packs_, n_packs, shared_packs_);
-  for (int r = 0; r < n_renderings; ++r) {
-    if (!by_packs[r]) continue;
-    if (r == 1 && shared) std::copy_n(shared_packs_, n_packs, packs_);  // shade() uses them up
-    n_packs_ = n_packs;
-    shade(input, {r, 0, 1, origin, false}, sums_[r]);
-  }
+  const bool by_groups = input.shades_lanes[pass.rendering];
+  n_packs_ = by_groups ? kernels.collect_groups(ids, width, height, triangles_.data(),
+                                                input.has_one_batch[pass.rendering] ? -1 : pass.rendering, packs_)
+                       : kernels.collect_packs(ids, width, height, triangles_.data(), packs_);
+  shade(input, pass, sums, by_groups ? ids : nullptr);
 }
 
 // Each sample a rasterization of its own: tiles with masked or transparent triangles.
@@ -174,14 +184,15 @@ void TilePainter::rasterize_mask(const PaintInput& input, uint32_t number, const
 
 // Packs of one batch state together, in calls of up to kBatchPacks; uses packs_ up, but not where colors are final:
 // then states do not matter. Where triangles are small most packs have few lanes: those are taken apart, and lanes of
-// different triangles shaded together.
-void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums) {
+// different triangles shaded together; but packs of collect_groups(), with the ids that they are from, stay as they
+// are.
+void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums, const uint32_t* group_ids) {
   const std::vector<Surface>& surfaces = *input.surfaces[pass.rendering];
   const bool together = input.has_final_colors[pass.rendering];
   for (int left = n_packs_; left > 0;) {
     const uint32_t state = packs_[0].triangle->state[pass.rendering];
     const Surface& surface = surfaces[state];
-    const int few = few_lanes(surface);
+    const int few = group_ids != nullptr ? 0 : few_lanes(surface);
     int n = 0, rest = 0;
     n_lanes_ = 0;
     for (int i = 0; i < left; ++i) {
@@ -200,15 +211,18 @@ void TilePainter::shade(const PaintInput& input, const ShadePass& pass, uint16_t
     }
     left = rest;
     shade_lanes(input, surface, pass, sums);
-    shade_packs(input, surface, pass, batch_, n, sums);
+    shade_packs(input, surface, pass, batch_, n, sums, group_ids);
   }
 }
 
 void TilePainter::shade_packs(const PaintInput& input, const Surface& surface, const ShadePass& pass,
-                              const LanePack* packs, int n, uint16_t* sums) {
+                              const LanePack* packs, int n, uint16_t* sums, const uint32_t* group_ids) {
   for (int i = 0; i < n; i += kBatchPacks) {
     const int count = std::min(kBatchPacks, n - i);
-    const ShadedBatch shaded = shader_.shade(input.kernels->tile, surface, pass, packs + i, count);
+    const ShadedBatch shaded =
+        group_ids == nullptr
+            ? shader_.shade(input.kernels->tile, surface, pass, packs + i, count)
+            : shader_.shade_groups(input.kernels->tile, surface, pass, packs + i, count, group_ids, triangles_.data());
     input.kernels->tile.accumulate(packs + i, count, pass.weighted, shaded.color, shaded.texels, shaded.added,
                                    input.background, sums);
   }
@@ -321,15 +335,16 @@ void TilePainter::write_previous(const PaintInput& input, const Area& area, Samp
   }
 }
 
-void TilePainter::write_color(const PaintInput& input, const Area& area) const {
+void TilePainter::write_color(const PaintInput& input, const Area& area) {
   const int shift = std::countr_zero(static_cast<unsigned>(input.pattern.size()));
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;
-  uint8_t rows[2][3 * kTileSize];
+  const bool painted[2] = {paints_directly(input, 0), n_renderings < 2 || paints_directly(input, 1)};
+  if (painted[0] && painted[1] && input.difference.empty()) return;
   for (int y = 0; y < area.height; ++y) {
     uint8_t* at[2];
     for (int r = 0; r < n_renderings; ++r) {
-      at[r] = input.color[r].empty() ? rows[r] : input.color[r].pixel(area.x, area.y + y);
-      input.kernels->tile.resolve_row(sums_[r] + y * kTileSize, shift, area.width, at[r]);
+      at[r] = input.color[r].empty() ? rgb_[r] + 3 * kTileSize * y : input.color[r].pixel(area.x, area.y + y);
+      if (!painted[r]) input.kernels->tile.resolve_row(sums_[r] + y * kTileSize, shift, area.width, at[r]);
     }
     if (!input.difference.empty())
       input.kernels->pixel.difference_row(at[0], at[1], input.difference.pixel(area.x, area.y + y),

@@ -22,6 +22,8 @@ struct PaintInput {
   const std::vector<Surface>* surfaces[2];  // [1] null: one rendering
   int shading_samples[2];                   // of each rendering, as RenderQuality
   bool has_final_colors[2];                 // of each rendering: BatchShader::has_final_colors() of all its surfaces
+  bool shades_lanes[2];                     // the same of BatchShader::shades_lanes()
+  bool has_one_batch[2];                    // of each rendering: all surfaces have the same `batch`
   bool has_transparent;                     // some material's alpha is not opaque
   uint8_t background[3];
   RgbView color[2];
@@ -51,7 +53,9 @@ class TilePainter {
   };
   static bool wants_color(const PaintInput& input, int rendering);
   static SamplePosition position(const Area& area, SampleOffset offset);
-  void shade_first_sample(const PaintInput& input, const Area& area);
+  void shade_first_sample(const PaintInput& input, const Area& area, int rendering);
+  void shade_ids(const PaintInput& input, const ShadePass& pass, const uint32_t* ids, int width, int height,
+                 uint16_t* sums);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);
   void shade_grid(const PaintInput& input, const Area& area, std::span<const int> renderings, int first_sample);
   void shade_each_sample(const PaintInput& input, const Area& area, int rendering,
@@ -64,9 +68,10 @@ class TilePainter {
   void rasterize(const PaintInput& input, SamplePosition origin);
   void rasterize_mask(const PaintInput& input, uint32_t number, const Surface& surface, const ShadePass& pass);
   int visible_packs(const PaintInput& input, const RasterTriangle& triangle, SamplePosition origin);
-  void shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
+  void shade(const PaintInput& input, const ShadePass& pass, uint16_t* sums, const uint32_t* group_ids = nullptr);
   void shade_packs(const PaintInput& input, const Surface& surface, const ShadePass& pass, const LanePack* packs, int n,
-                   uint16_t* sums);
+                   uint16_t* sums, const uint32_t* group_ids = nullptr);
+  bool paints_directly(const PaintInput& input, int rendering) const;
   void take_whole_groups(const Area& area, int rendering);
   void put_whole_groups_back();
   void shade_whole_groups(const PaintInput& input, const ShadePass& pass, uint16_t* sums);
@@ -76,13 +81,14 @@ class TilePainter {
   void add_sample(const PaintInput& input, int rendering);
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
   void write_previous(const PaintInput& input, const Area& area, SamplePosition origin);
-  void write_color(const PaintInput& input, const Area& area) const;
+  void write_color(const PaintInput& input, const Area& area);
   static void write_background(const PaintInput& input, const Area& area);
   static void clear_previous(const PaintInput& input, const Area& area);
 
   alignas(64) float depth_[kTilePixels];
   alignas(64) uint32_t ids_[kTilePixels];  // 1 + index into triangles_; 0 = background
   alignas(64) uint16_t sums_[2][3 * kTilePixels];
+  alignas(64) uint8_t rgb_[2][3 * kTilePixels];  // of renderings that have no target but count for the difference
   alignas(64) float rows_[4 * kBatchLanes];
   BatchShader shader_;
   // Of tiles with masked or transparent triangles.

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <vector>
 
 #include "tests/support/kernel_check.h"
@@ -294,35 +295,125 @@ TEST_CASE("accumulate_lanes: samples by themselves add what their packs add") {
   }
 }
 
-TEST_CASE("add_colors: adds what packs, interpolated and accumulated, add; groups of one triangle and of eight") {
+// A tile that shows a few triangles, some larger than it, others of a pixel or two.
+struct SeenTile {
+  PackedTriangles input;
+  std::vector<const RasterTriangle*> list;
+  SamplePosition origin;
+  alignas(32) uint32_t ids[kTilePixels];
+
+  explicit SeenTile(uint32_t seed) : input(random_packs(seed, 1)), origin{128, 128} {
+    for (RasterTriangle& t : input.triangles) {
+      t.state[0] = static_cast<uint32_t>(list.size() % 3);
+      t.state[1] = 0;
+      list.push_back(&t);
+    }
+    std::vector<float> depth(kTilePixels, 1.0f);
+    std::fill_n(ids, kTilePixels, 0u);
+    const auto n = static_cast<uint32_t>(list.size());
+    for (uint32_t i = 0; i < n && i <= seed; ++i)
+      kernels_for(Isa::scalar)->tile.rasterize(*list[i], i + 1, origin, depth.data(), ids);
+  }
+};
+
+// The colors that packs, interpolated and accumulated, give.
+std::vector<uint16_t> colors_by_packs(const SeenTile& tile, int width, int height, int rendering,
+                                      const uint8_t background[3]) {
+  const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+  std::vector<uint16_t> sums;
+  for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+  std::vector<LanePack> packs(kTilePixels);
+  const int n = scalar.collect_packs(tile.ids, width, height, tile.list.data(), packs.data());
+  std::vector<float> rows(3 * kBatchLanes);
+  for (int first = 0; first < n; first += kBatchPacks) {
+    const int count = std::min(kBatchPacks, n - first);
+    scalar.interpolate(packs.data() + first, count, tile.origin, {rendering, 3, rows.data(), nullptr, 0, 0, 0, 0});
+    scalar.accumulate(packs.data() + first, count, false, rows.data(), nullptr, nullptr, background, sums.data());
+  }
+  return sums;
+}
+
+TEST_CASE("add_colors, paint_colors: the colors that packs give, in groups of one triangle and of many") {
+  int many = 0, whole = 0;
   for (int isa = 0; isa < kIsaCount; ++isa) {
     const Kernels* const table = kernels_for(static_cast<Isa>(isa));
     if (table == nullptr) continue;
     Random random(61);
-    const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
     const uint8_t background[3] = {10, 200, 255};
-    const SamplePosition origin{128, 128};
     for (uint32_t round = 0; round < 60; ++round) {
-      const PackedTriangles input = random_packs(round, 1);
-      std::vector<const RasterTriangle*> list;
-      for (const RasterTriangle& t : input.triangles) list.push_back(&t);
-      alignas(32) uint32_t ids[kTilePixels];
-      const uint32_t kinds = 1 + round % 17, run = 1 + random.bits() % 9;
-      for (uint32_t i = 0, id = 0; i < kTilePixels; ++i) ids[i] = id = i % run == 0 ? random.bits() % kinds : id;
+      const SeenTile tile(round);
+      for (int i = 0; i < kTilePixels; i += 8) {
+        const std::set<uint32_t> kinds(tile.ids + i, tile.ids + i + 8);
+        many += kinds.size() > 4 ? 1 : 0;
+        whole += kinds.size() == 1 && *kinds.begin() != 0 ? 1 : 0;
+      }
       const int width = 1 + static_cast<int>(random.bits() % kTileSize), height = 32 - static_cast<int>(round % 4);
       const int rendering = static_cast<int>(round % 2);
-      std::vector<uint16_t> expected(3 * kTilePixels, 1000), actual = expected;
-      std::vector<LanePack> packs(kTilePixels);
-      const int n = scalar.collect_packs(ids, width, height, list.data(), packs.data());
-      std::vector<float> rows(3 * kBatchLanes);
+      const std::vector<uint16_t> expected = colors_by_packs(tile, width, height, rendering, background);
+      std::vector<uint16_t> sums;
+      for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+      table->tile.add_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
+                             sums.data());
+      REQUIRE(expected == sums);
+      const ptrdiff_t stride = 3 * kTileSize + 5;
+      std::vector<uint8_t> rgb(static_cast<size_t>(stride) * kTileSize, 77), wanted = rgb;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < 3 * width; ++x)
+          wanted[static_cast<size_t>(y * stride + x)] =
+              static_cast<uint8_t>(expected[static_cast<size_t>(x % 3 * kTilePixels + y * kTileSize + x / 3)]);
+      table->tile.paint_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
+                               rgb.data(), stride);
+      REQUIRE(wanted == rgb);
+    }
+  }
+  CHECK(many > 10);
+  CHECK(whole > 100);
+}
+
+TEST_CASE("collect_groups, interpolate_groups: each lane gets the bits that the pack of its own triangle gives it") {
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+    for (uint32_t round = 0; round < 60; ++round) {
+      const SeenTile tile(round);
+      const int rendering = static_cast<int>(round % 2), key = round % 4 == 3 ? -1 : rendering;
+      std::vector<LanePack> packs(kTilePixels), same(kTilePixels);
+      const int n = scalar.collect_groups(tile.ids, kTileSize, kTileSize, tile.list.data(), key, packs.data());
+      REQUIRE(n == table->tile.collect_groups(tile.ids, kTileSize, kTileSize, tile.list.data(), key, same.data()));
+      int lanes = 0;
+      for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+        const bool equal = packs[i].triangle == same[i].triangle && packs[i].x == same[i].x &&
+                           packs[i].y == same[i].y && packs[i].mask == same[i].mask;
+        REQUIRE(equal);
+        lanes += std::popcount(packs[i].mask);
+      }
+      REQUIRE(lanes == std::count_if(tile.ids, tile.ids + kTilePixels, [](uint32_t id) { return id != 0; }));
+      const int attributes = round % 5 == 0 ? 9 : 5 + static_cast<int>(round % 2);
       for (int first = 0; first < n; first += kBatchPacks) {
         const int count = std::min(kBatchPacks, n - first);
-        scalar.interpolate(packs.data() + first, count, origin, {rendering, 3, rows.data(), nullptr, 0, 0, 0, 0});
-        scalar.accumulate(packs.data() + first, count, false, rows.data(), nullptr, nullptr, background,
-                          expected.data());
+        const LanePack* const at = packs.data() + first;
+        std::vector<float> expected(kBatchLanes * (kMaxAttributes + 1), -1.0f), actual = expected, own = expected;
+        InterpolateTarget target{rendering, attributes, expected.data(), nullptr, 3, 256, 64, -1};
+        const auto with_rows = [&](std::vector<float>& rows) {
+          target.rows = rows.data();
+          target.lod = round % 3 == 0 ? nullptr : rows.data() + kBatchLanes * kMaxAttributes;
+          return target;
+        };
+        scalar.interpolate_groups(at, count, tile.ids, tile.list.data(), tile.origin, with_rows(expected));
+        table->tile.interpolate_groups(at, count, tile.ids, tile.list.data(), tile.origin, with_rows(actual));
+        REQUIRE(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(float)) == 0);
+        for (size_t i = 0; i < static_cast<size_t>(8 * count); ++i) {
+          const LanePack& pack = at[i / 8];
+          if ((pack.mask >> (i % 8) & 1) == 0) continue;
+          const size_t pixel = static_cast<size_t>(pack.y * kTileSize + pack.x) + i % 8;
+          const LanePack alone{tile.list[tile.ids[pixel] - 1], pack.x, pack.y, 0xFF, {}};
+          scalar.interpolate(&alone, 1, tile.origin, with_rows(own));
+          for (size_t row = 0; row < static_cast<size_t>(attributes); ++row)
+            REQUIRE(std::bit_cast<uint32_t>(own[row * kBatchLanes + i % 8]) ==
+                    std::bit_cast<uint32_t>(actual[row * kBatchLanes + i]));
+        }
       }
-      table->tile.add_colors(ids, width, height, list.data(), rendering, origin, background, actual.data());
-      REQUIRE(expected == actual);
     }
   }
 }

@@ -133,8 +133,23 @@ inline I8 select(M8 m, I8 a, I8 b) {
 inline uint32_t bits(M8 m) {
   return static_cast<uint32_t>(_mm256_movemask_ps(m.v));
 }
+inline M8 equal_to(I8 a, uint32_t value) {
+  return {_mm256_castsi256_ps(_mm256_cmpeq_epi32(a.v, _mm256_set1_epi32(static_cast<int32_t>(value))))};
+}
 inline uint32_t matching_lanes(I8 a, uint32_t value) {
-  return bits({_mm256_castsi256_ps(_mm256_cmpeq_epi32(a.v, _mm256_set1_epi32(static_cast<int32_t>(value))))});
+  return bits(equal_to(a, value));
+}
+// Halves hold red, green, blue and blue of four lanes. Stored: bytes 0..11 of the first half and 0..3 of the second,
+// then the rest of that.
+inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {
+  const __m256i order = _mm256_setr_epi8(0, 4, 8, 1, 5, 9, 2, 6, 10, 3, 7, 11, -1, -1, -1, -1,  //
+                                         5, 9, 2, 6, 10, 3, 7, 11, -1, -1, -1, -1, 0, 4, 8, 1);
+  const __m256i planes = _mm256_packus_epi16(_mm256_packs_epi32(red.v, green.v), _mm256_packs_epi32(blue.v, blue.v));
+  const __m256i bytes = _mm256_shuffle_epi8(planes, order);
+  const __m128i high = _mm256_extracti128_si256(bytes, 1);
+  auto* at = reinterpret_cast<__m128i*>(p);
+  _mm_storeu_si128(at, _mm_blend_epi32(_mm256_castsi256_si128(bytes), high, 8));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(p + 16), high);
 }
 
 using LaneMask16 = __m128i;

@@ -200,12 +200,23 @@ struct TileKernels {
   int (*collect_packs)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
                        LanePack* packs);
 
+  // The same, but one pack for all triangles of the same `state[rendering]` in a group, `triangle` the one in its
+  // lowest lane; by squares of 8 x 8 pixels, row after row in each. rendering < 0: all states are the same.
+  int (*collect_groups)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
+                        int rendering, LanePack* packs);
+
   // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too.
   void (*interpolate)(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target);
 
   // The same for n lanes of any triangles, rounded up to 8: each gets the bits that its pack would give it. The records
   // of attributes must be readable for one float beyond their ends.
   void (*interpolate_lanes)(const LaneSample* samples, int n, SamplePosition origin, const InterpolateTarget& target);
+
+  // The same for packs of collect_groups() from ids of samples that are inside their triangles: each lane of a mask
+  // gets the bits that the pack of its own triangle would give it, the others those of the triangle in the lowest lane.
+  // Records of attributes as for interpolate_lanes().
+  void (*interpolate_groups)(const LanePack* packs, int n, const uint32_t* ids, const RasterTriangle* const* triangles,
+                             SamplePosition origin, const InterpolateTarget& target);
 
   // Blinn-Phong lighting of n lanes (rounded up to 8): color rows[0..2] (255 = full) become
   // emission + color/255 * (ambient + sum diffuse N.L); specular rows get sum specular (N.H)^shininess.
@@ -269,10 +280,15 @@ struct TileKernels {
                            const float* specular, const uint8_t background[3], uint16_t* sums);
 
   // collect_packs(), interpolate() of attributes 0..2 and accumulate() of them as final colors, in one: the colors of
-  // all samples in the ids are added to the sums. Groups of eight are read whole. Records of attributes as for
-  // interpolate_lanes().
+  // all samples in the ids, which are inside their triangles, are added to the sums. Groups of eight are read whole.
+  // Records of attributes as for interpolate_lanes().
   void (*add_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
                      SamplePosition origin, const uint8_t background[3], uint16_t* sums);
+
+  // The same for pictures of one sample a pixel: width x height pixels of RGB bytes, rows `stride` bytes apart.
+  void (*paint_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
+                       int rendering, SamplePosition origin, const uint8_t background[3], uint8_t* rgb,
+                       ptrdiff_t stride);
 
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);

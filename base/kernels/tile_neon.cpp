@@ -140,9 +140,16 @@ inline uint32_t bits(M8 m) {
   constexpr uint32_t kLow[4] = {1, 2, 4, 8}, kHigh[4] = {16, 32, 64, 128};
   return vaddvq_u32(vorrq_u32(vandq_u32(m.lo, vld1q_u32(kLow)), vandq_u32(m.hi, vld1q_u32(kHigh))));
 }
-inline uint32_t matching_lanes(I8 a, uint32_t value) {
+inline M8 equal_to(I8 a, uint32_t value) {
   const int32x4_t wanted = vdupq_n_s32(static_cast<int32_t>(value));
-  return bits({vceqq_s32(a.lo, wanted), vceqq_s32(a.hi, wanted)});
+  return {vceqq_s32(a.lo, wanted), vceqq_s32(a.hi, wanted)};
+}
+inline uint32_t matching_lanes(I8 a, uint32_t value) {
+  return bits(equal_to(a, value));
+}
+inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {
+  const auto bytes = [](I8 v) { return vqmovun_s16(vcombine_s16(vqmovn_s32(v.lo), vqmovn_s32(v.hi))); };
+  vst3_u8(p, uint8x8x3_t{{bytes(red), bytes(green), bytes(blue)}});
 }
 
 using LaneMask16 = uint16x8_t;

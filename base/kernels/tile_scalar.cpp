@@ -65,6 +65,26 @@ int collect_packs(const uint32_t* ids, int width, int height, const RasterTriang
   return n;
 }
 
+int collect_groups(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
+                   LanePack* packs) {
+  int n = 0;
+  for (int square = 0; square < (height + 7) / 8 * kTileSize; ++square) {
+    const int x = square % kTileSize / 8 * 8, y = square / kTileSize * 8 + square % 8;
+    if (x >= width || y >= height) continue;
+    const int first = n;
+    for (int k = 0; k < 8; ++k) {
+      const uint32_t id = ids[y * kTileSize + x + k];
+      if (id == 0) continue;
+      const RasterTriangle* const triangle = triangles[id - 1];
+      int i = first;
+      while (i < n && rendering >= 0 && packs[i].triangle->state[rendering] != triangle->state[rendering]) ++i;
+      if (i == n) packs[n++] = {triangle, static_cast<uint8_t>(x), static_cast<uint8_t>(y), 0, {}};
+      packs[i].mask = static_cast<uint8_t>(packs[i].mask | 1 << k);
+    }
+  }
+  return n;
+}
+
 // E_i / 2^shift of lane k of a pack whose lane 0 has E_i = first. Exact (rounded down) up to shift 8, which is
 // area 2^22 pixels; beyond, the error is under 8 of more than 2^30. Never negative inside the triangle, up to that
 // error, and modulo 2^32 outside.
@@ -249,6 +269,27 @@ void accumulate_lanes(const LaneSample* samples, int n, bool weighted, const flo
                     specular, background, sums);
 }
 
+// The row element `at`: what pixel (px, py) of the tile would be given by its pack if it showed `t`.
+void interpolate_pixel(const RasterTriangle& t, SamplePosition origin, int px, int py, const InterpolateTarget& target,
+                       int at) {
+  const int k = px & 7;
+  const int32_t x = origin.x + 256 * (px - k) - t.x0, y = origin.y + 256 * py - t.y0;
+  interpolate_lane(t, edge(t, 1, x, y), edge(t, 2, x, y), k, target, at);
+}
+
+void interpolate_groups(const LanePack* packs, int n, const uint32_t* ids, const RasterTriangle* const* triangles,
+                        SamplePosition origin, const InterpolateTarget& target) {
+  for (int p = 0; p < n; ++p) {
+    const uint32_t* const group = ids + packs[p].y * kTileSize + packs[p].x;
+    int lowest = 0;
+    while ((packs[p].mask >> lowest & 1) == 0) ++lowest;
+    for (int k = 0; k < 8; ++k) {
+      const RasterTriangle& t = *triangles[group[(packs[p].mask >> k & 1) != 0 ? k : lowest] - 1];
+      interpolate_pixel(t, origin, packs[p].x + k, packs[p].y, target, 8 * p + k);
+    }
+  }
+}
+
 void add_colors(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
                 SamplePosition origin, const uint8_t background[3], uint16_t* sums) {
   float rows[3 * kBatchLanes];
@@ -257,11 +298,23 @@ void add_colors(const uint32_t* ids, int width, int height, const RasterTriangle
     for (int px = 0; px < (width + 7) / 8 * 8; ++px) {
       const uint32_t id = ids[py * kTileSize + px];
       if (id == 0) continue;
-      const RasterTriangle& t = *triangles[id - 1];
-      const int k = px & 7;
-      const int32_t x = origin.x + 256 * (px - k) - t.x0, y = origin.y + 256 * py - t.y0;
-      interpolate_lane(t, edge(t, 1, x, y), edge(t, 2, x, y), k, target, 0);
+      interpolate_pixel(*triangles[id - 1], origin, px, py, target, 0);
       accumulate_lane(0, py * kTileSize + px, 1, rows, nullptr, nullptr, background, sums);
+    }
+}
+
+void paint_colors(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
+                  SamplePosition origin, const uint8_t background[3], uint8_t* rgb, ptrdiff_t stride) {
+  float rows[3 * kBatchLanes];
+  const InterpolateTarget target{rendering, 3, rows, nullptr, 0, 0, 0, 0};
+  for (int py = 0; py < height; ++py)
+    for (int px = 0; px < width; ++px) {
+      uint8_t* const out = rgb + py * stride + 3 * px;
+      const uint32_t id = ids[py * kTileSize + px];
+      if (id != 0) interpolate_pixel(*triangles[id - 1], origin, px, py, target, 0);
+      for (int c = 0; c < 3; ++c)
+        out[c] =
+            id == 0 ? background[c] : static_cast<uint8_t>(final_color(rows, nullptr, nullptr, c * kBatchLanes) + 0.5f);
     }
 }
 
@@ -278,13 +331,16 @@ void fill_tile_scalar(TileKernels& table) {
   table.rasterize = rasterize;
   table.rasterize_all = rasterize_all;
   table.collect_packs = collect_packs;
+  table.collect_groups = collect_groups;
   table.interpolate = interpolate;
   table.interpolate_lanes = interpolate_lanes;
+  table.interpolate_groups = interpolate_groups;
   table.footprint = footprint;
   table.blend = blend;
   table.accumulate = accumulate;
   table.accumulate_lanes = accumulate_lanes;
   table.add_colors = add_colors;
+  table.paint_colors = paint_colors;
   table.resolve_row = resolve_row;
 }
 

@@ -138,9 +138,22 @@ inline I8 select(M8 m, I8 a, I8 b) {
 inline uint32_t bits(M8 m) {
   return static_cast<uint32_t>(_mm_movemask_ps(m.lo) | _mm_movemask_ps(m.hi) << 4);
 }
-inline uint32_t matching_lanes(I8 a, uint32_t value) {
+inline M8 equal_to(I8 a, uint32_t value) {
   const __m128i wanted = _mm_set1_epi32(static_cast<int32_t>(value));
-  return bits({_mm_castsi128_ps(_mm_cmpeq_epi32(a.lo, wanted)), _mm_castsi128_ps(_mm_cmpeq_epi32(a.hi, wanted))});
+  return {_mm_castsi128_ps(_mm_cmpeq_epi32(a.lo, wanted)), _mm_castsi128_ps(_mm_cmpeq_epi32(a.hi, wanted))};
+}
+inline uint32_t matching_lanes(I8 a, uint32_t value) {
+  return bits(equal_to(a, value));
+}
+inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {
+  const __m128i order = _mm_setr_epi8(0, 4, 8, 1, 5, 9, 2, 6, 10, 3, 7, 11, -1, -1, -1, -1);
+  const auto interleaved = [&](__m128i r, __m128i g, __m128i b) {
+    return _mm_shuffle_epi8(_mm_packus_epi16(_mm_packs_epi32(r, g), _mm_packs_epi32(b, b)), order);
+  };
+  const __m128i low = interleaved(red.lo, green.lo, blue.lo), high = interleaved(red.hi, green.hi, blue.hi);
+  auto* at = reinterpret_cast<__m128i*>(p);
+  _mm_storeu_si128(at, _mm_or_si128(low, _mm_slli_si128(high, 12)));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(p + 16), _mm_srli_si128(high, 4));
 }
 
 using LaneMask16 = __m128i;
