@@ -100,6 +100,9 @@ template <int kBits>
 inline I8 shift_left(I8 a) {
   return {_mm256_slli_epi32(a.v, kBits)};
 }
+inline I8 shift_right(I8 a, I8 n) {
+  return {_mm256_srav_epi32(a.v, n.v)};
+}
 inline I8 smaller(I8 a, I8 b) {
   return {_mm256_min_epi32(a.v, b.v)};
 }
@@ -215,10 +218,9 @@ inline __m256i broadcast_words(__m256i v, int i) {
 }
 
 inline __m128i load_pairs(const uint8_t* texels, int32_t first, int32_t second) {
-  const auto at = [&](int32_t i) {
-    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(texels + 4 * ptrdiff_t{i}));
-  };
-  return _mm_unpacklo_epi64(at(first), at(second));
+  const auto* const low = reinterpret_cast<const __m128i*>(texels + 4 * ptrdiff_t{first});
+  const auto* const high = reinterpret_cast<const __m64*>(texels + 4 * ptrdiff_t{second});
+  return _mm_castps_si128(_mm_loadh_pi(_mm_castsi128_ps(_mm_loadl_epi64(low)), high));
 }
 
 // Lane k of the low half and lane k + 4 in the high half: [fine pair | coarse pair] each, offset to signed bytes.

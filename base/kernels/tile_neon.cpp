@@ -106,6 +106,9 @@ template <int kBits>
 inline I8 shift_left(I8 a) {
   return {vshlq_n_s32(a.lo, kBits), vshlq_n_s32(a.hi, kBits)};
 }
+inline I8 shift_right(I8 a, I8 n) {
+  return {vshlq_s32(a.lo, vnegq_s32(n.lo)), vshlq_s32(a.hi, vnegq_s32(n.hi))};
+}
 inline I8 smaller(I8 a, I8 b) {
   return {vminq_s32(a.lo, b.lo), vminq_s32(a.hi, b.hi)};
 }

@@ -104,6 +104,15 @@ template <int kBits>
 inline I8 shift_left(I8 a) {
   return {_mm_slli_epi32(a.lo, kBits), _mm_slli_epi32(a.hi, kBits)};
 }
+// n in 0..15, lane by lane: multiplied by a power of two, exactly, as 0 <= a < 2^24 is.
+inline __m128i shifted(__m128i a, __m128i exponent) {
+  const __m128 power = _mm_castsi128_ps(_mm_slli_epi32(exponent, 23));
+  return _mm_cvttps_epi32(_mm_mul_ps(_mm_cvtepi32_ps(a), power));
+}
+inline I8 shift_right(I8 a, I8 n) {
+  const __m128i bias = _mm_set1_epi32(127);
+  return {shifted(a.lo, _mm_sub_epi32(bias, n.lo)), shifted(a.hi, _mm_sub_epi32(bias, n.hi))};
+}
 inline I8 smaller(I8 a, I8 b) {
   return {_mm_min_epi32(a.lo, b.lo), _mm_min_epi32(a.hi, b.hi)};
 }
