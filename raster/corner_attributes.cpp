@@ -128,36 +128,6 @@ FaceNormal unit_normal(const FaceNormal& normal) {
   return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
 }
 
-// The cross product in single precision and, for each component, the sum of the magnitudes of its two terms, of which
-// it is off by less than 2^-21 times as much: differences, products and their difference are each off by 2^-24. Where
-// its dot product with a normal exceeds 2^-16 of such magnitudes it has the sign of that with the face's normal, and is
-// as far from 0 as is_on_seen_side() asks, up to what rounding does to either.
-bool keeps_own_normals(const Vertex* const vertices[3], bool front) {
-  float e1[3], e2[3], cross[3], size[3];
-  for (int c = 0; c < 3; ++c) {
-    e1[c] = vertices[1]->position[c] - vertices[0]->position[c];
-    e2[c] = vertices[2]->position[c] - vertices[0]->position[c];
-  }
-  constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
-  for (int c = 0; c < 3; ++c) {
-    const float p = e1[kNext[c]] * e2[kLast[c]], q = e1[kLast[c]] * e2[kNext[c]];
-    cross[c] = front ? p - q : q - p;
-    size[c] = std::fabs(p) + std::fabs(q);
-  }
-  bool all = true;
-  for (int i = 0; i < 3; ++i) {
-    const float* const n = vertices[i]->normal;
-    const float x = std::fabs(n[0]), y = std::fabs(n[1]), z = std::fabs(n[2]);
-    const float along = (n[0] * cross[0] + n[1] * cross[1]) + n[2] * cross[2];
-    const float magnitude = (x * size[0] + y * size[1]) + z * size[2];
-    const float squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
-    // False for NaN. The first four: own_normal() gives these components and calls them usable.
-    all = all && x <= 0x1p40f && y <= 0x1p40f && z <= 0x1p40f && squared >= 0x1p-100f && magnitude <= 0x1p100f &&
-          along >= 0x1p-80f && along >= 0x1p-16f * magnitude;
-  }
-  return all;
-}
-
 void light_points(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]) {
   alignas(32) float normal[3][kBatchLanes], position[3][kBatchLanes], color[3][kBatchLanes], specular[3][kBatchLanes];
   const int n_groups = (n + 7) / 8;

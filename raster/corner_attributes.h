@@ -36,10 +36,6 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
                        const Vertex* const vertices[3], const float* const cached[3], const Vertex& first, bool front,
                        CornerAttributes& out);
 
-// Whether own normals light all corners of a triangle that is a face by itself, as corner_attributes() would find with
-// the face's normal; told without it where it is plain. False: it may be so or not.
-bool keeps_own_normals(const Vertex* const vertices[3], bool front);
-
 // The record that the kernels read, for a triangle whose corner i is the mean of the given corners with weights[i]:
 // a0, a1 - a0, a2 - a0 for each attribute. write_whole_record: corner i is the given corner order[i].
 // From the vertices at once: write_color_record for unlit surfaces without other attributes; write_lit_record for

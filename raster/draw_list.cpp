@@ -203,11 +203,12 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   chunk.n_pending = 0;
   chunk.drop_back = 0;
   Candidate candidate;
-  for (uint32_t left = masks.drawn; left != 0; left &= left - 1) {
+  uint32_t kept = kept_normals(input, masks, chunk);
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, kept >>= 1) {
     const int lane = std::countr_zero(left);
     const PendingTriangle& triangle = chunk.pending[lane];
     const bool front = (masks.front >> lane & 1) != 0;
-    if (attach_plain(input, triangle, front, chunk.attributes, *stored)) {
+    if (attach_plain(input, triangle, front, (kept & 1) != 0, chunk.attributes, *stored)) {
       list_in_tiles(input, *stored++, chunk);
     } else {
       fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);

@@ -52,6 +52,7 @@ struct FrameInput {
   const std::vector<Surface>* surfaces[2];
   const float* previous_clip;    // four a vertex, or null where nobody asks where things were
   bool wants_attributes = true;  // false: nothing is shaded, and attributes[0] and [1] stay null
+  bool wants_normals = true;     // false: no surface is lit
 };
 
 // A triangle that survived the trivial rejections, with what its face contributes.
@@ -114,10 +115,11 @@ class DrawList {
   bool is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const;
   void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
                       Candidate& out) const;
-  bool attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, Arena<float>& arena,
-                    RasterTriangle& triangle) const;
+  static uint32_t kept_normals(const FrameInput& input, const SetupMasks& masks, const Chunk& chunk);
+  bool attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, bool keeps_normals,
+                    Arena<float>& arena, RasterTriangle& triangle) const;
   const float* plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
-                            Arena<float>& arena) const;
+                            bool keeps_normals, Arena<float>& arena) const;
   void list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const;
   void fill_bins(Chunk& chunk) const;
 

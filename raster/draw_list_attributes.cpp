@@ -1,5 +1,7 @@
 // What a triangle of the list carries for the shading: ids, states and records of attributes.
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 
 #include "raster/corner_attributes.h"
 #include "raster/draw_list.h"
@@ -74,10 +76,28 @@ const FaceNormal& DrawList::normal_of(const Mesh& mesh, uint32_t face_number, Ch
   return chunk.normal;
 }
 
+// Bit i: own normals light all corners of the i-th drawn triangle of those that wait, as corner_attributes() would find
+// with the normal of the face, which the triangle is alone. Bits that are 0 say nothing.
+uint32_t DrawList::kept_normals(const FrameInput& input, const SetupMasks& masks, const Chunk& chunk) {
+  if (!input.wants_attributes || !input.wants_normals || input.previous_clip != nullptr || masks.drawn == 0) return 0;
+  static_assert(offsetof(Vertex, normal) == 3 * sizeof(float) && sizeof(Vertex) >= 8 * sizeof(float));
+  const float* vertices[kSetupLanes][3];
+  uint32_t front = 0, whole = 0;
+  int n = 0;
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, ++n) {
+    const int lane = std::countr_zero(left);
+    const PendingTriangle& pending = chunk.pending[lane];
+    for (int i = 0; i < 3; ++i) vertices[n][i] = input.mesh->vertices[pending.vertices[i]].position;
+    front |= (masks.front >> lane & 1) << n;
+    whole |= (input.mesh->faces[pending.face].count == 3 ? 1u : 0u) << n;
+  }
+  return whole & input.kernels->front.keeps_normals(n, vertices, front);
+}
+
 // What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
 // False: it does, and the triangle is not complete.
-bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, Arena<float>& arena,
-                            RasterTriangle& triangle) const {
+bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, bool keeps_normals,
+                            Arena<float>& arena, RasterTriangle& triangle) const {
   if (input.previous_clip != nullptr) return false;
   const uint32_t material = input.mesh->faces[pending.face].material;
   triangle.id = pending.face + 1;
@@ -86,7 +106,7 @@ bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pend
     triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
     triangle.attributes[r] = nullptr;
     if (!drawn || !input.wants_attributes) continue;
-    triangle.attributes[r] = plain_record(input, r, pending, front, arena);
+    triangle.attributes[r] = plain_record(input, r, pending, front, keeps_normals, arena);
     if (triangle.attributes[r] == nullptr) return false;
   }
   triangle.attributes[2] = nullptr;
@@ -95,7 +115,7 @@ bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pend
 
 // The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
 const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
-                                    Arena<float>& arena) const {
+                                    bool keeps_normals, Arena<float>& arena) const {
   const Mesh& mesh = *input.mesh;
   const Face& face = mesh.faces[pending.face];
   const Surface& surface = (*input.surfaces[rendering])[face.material];
@@ -111,16 +131,14 @@ const float* DrawList::plain_record(const FrameInput& input, int rendering, cons
     write_color_record(surface, vertices, order, record);
     return record;
   }
-  if (face.count != 3) return nullptr;
+  if (!keeps_normals) return nullptr;
   if (by_sample) {
-    if (!keeps_own_normals(vertices, front)) return nullptr;
     float* const record = arena.allocate(27);
     return write_normal_record(vertices, order, record) ? record : nullptr;
   }
   const float* lit[3];
   for (int i = 0; i < 3; ++i) lit[i] = lit_[rendering].find(pending.vertices[i], face.material);
-  if (lit[0] == nullptr || lit[1] == nullptr || lit[2] == nullptr || !keeps_own_normals(vertices, front))
-    return nullptr;
+  if (lit[0] == nullptr || lit[1] == nullptr || lit[2] == nullptr) return nullptr;
   float* const record = arena.allocate(9);
   write_lit_record(lit, order, record);
   return record;

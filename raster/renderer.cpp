@@ -168,6 +168,12 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
       return surface.batch == surfaces[r].front().batch;
     });
   }
+  frame.wants_normals = false;
+  for (int r = 0; r < 2; ++r)
+    frame.wants_normals =
+        frame.wants_normals || (frame.surfaces[r] != nullptr &&
+                                std::any_of(surfaces[r].begin(), surfaces[r].end(),
+                                            [](const Surface& surface) { return surface.lit != Surface::Lit::no; }));
   auto stats = draw_list.build(frame, pool);
   if (!stats.ok()) return stats;
 

@@ -144,6 +144,63 @@ bool is_strictly_inside(const ScreenVertex (&v)[3], int64_t x, int64_t y) {
   return positive == 3 || negative == 3;
 }
 
+// Triangles with normals around theirs, some almost in their planes, some too large, too small or not numbers.
+struct NormalTriangles {
+  float vertices[kSetupLanes][3][8];
+  const float* at[kSetupLanes][3];
+
+  explicit NormalTriangles(Random& random) {
+    for (int k = 0; k < kSetupLanes; ++k) {
+      const float scale = random.bits() % 8 == 0 ? 1e-20f : random.bits() % 8 == 0 ? 1e18f : 10.0f;
+      for (int i = 0; i < 3; ++i) {
+        at[k][i] = vertices[k][i];
+        for (int c = 0; c < 8; ++c) vertices[k][i][c] = random.between(-1, 1) * (c < 3 ? scale : 1.0f);
+      }
+      if (random.bits() % 4 != 0) flatten(random, k);
+      const float odd[] = {0.0f, 1e13f, 1e-38f, std::numeric_limits<float>::quiet_NaN(), 1e38f};
+      if (random.bits() % 4 == 0) vertices[k][random.bits() % 3][random.bits() % 6] = odd[random.bits() % 5];
+    }
+  }
+  // Into the plane z = 0, with normals that lean from its normal.
+  void flatten(Random& random, int k) {
+    const bool up = random.bits() % 2 == 0;
+    for (auto& vertex : vertices[k]) {
+      vertex[2] = 0;
+      vertex[5] = (up ? 1.0f : -1.0f) * (random.bits() % 4 == 0 ? 1e-5f : 1.0f) * random.unit();
+    }
+  }
+};
+
+TEST_CASE("keeps_normals: every instruction set says what the scalar one says, and that is true of the normals") {
+  int kept_count = 0;
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(77);
+    for (int round = 0; round < 400; ++round) {
+      const NormalTriangles input(random);
+      const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
+      const uint32_t front = random.bits() & 0xFF;
+      const uint32_t kept = scalar.front.keeps_normals(n, input.at, front);
+      REQUIRE(kept == table.front.keeps_normals(n, input.at, front));
+      REQUIRE(kept < 1u << n);
+      for (int k = 0; k < n; ++k) {
+        if ((kept >> k & 1) == 0) continue;
+        ++kept_count;
+        const auto at = [&](int i, int c) { return static_cast<long double>(input.vertices[k][i][c]); };
+        for (int i = 0; i < 3; ++i) {
+          long double along = 0;
+          for (int c = 0; c < 3; ++c) {
+            const int next = (c + 1) % 3, last = (c + 2) % 3;
+            along += at(i, 3 + c) * ((at(1, next) - at(0, next)) * (at(2, last) - at(0, last)) -
+                                     (at(1, last) - at(0, last)) * (at(2, next) - at(0, next)));
+          }
+          REQUIRE((along > 0) == ((front >> k & 1) != 0));
+        }
+      }
+    }
+  });
+  CHECK(kept_count > 100);
+}
+
 TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that it keeps cover one") {
   for (const Isa isa : {Isa::scalar, best_isa()}) {
     Random random(47);

@@ -70,6 +70,11 @@ struct FrontKernels {
   // `out`: room for n; the drawn ones, in order.
   SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const ScreenVertex* const (*corners)[3],
                                 uint32_t drop_back, RasterTriangle* out);
+
+  // Bit k: the vertices' own normals surely lie on the seen side of triangle k of n <= kSetupLanes, none near its
+  // plane: the side where its corners are counter-clockwise, or the other where bit k of `front` is 0. vertices[k][i]:
+  // three floats of position, three of a normal of any length, and two more that are readable.
+  uint32_t (*keeps_normals)(int n, const float* const (*vertices)[3], uint32_t front);
 };
 
 // front_scalar.cpp; the others stand beside the tile kernels, whose operations they use.

@@ -1,4 +1,6 @@
 // The front end in scalar code; what it computes is in front_one_simd.inc.
+#include <cmath>
+
 #include "base/kernels/front_kernels.h"
 
 namespace pac {
@@ -13,11 +15,47 @@ void transform_vertices(const ScreenTransform& transform, const float* positions
     outcodes[i] = one_vertex(transform, positions + static_cast<size_t>(i) * stride, clip, screen[i]);
 }
 
+// The cross product in single precision and, for each component, the sum of the magnitudes of its two terms, of which
+// it is off by less than 2^-21 times as much: differences, products and their difference are each off by 2^-24. Where
+// its dot product with a normal exceeds 2^-16 of such magnitudes it has the sign of that with the face's normal.
+bool keeps_normals_of(const float* const vertices[3], bool front) {
+  float e1[3], e2[3], cross[3], size[3];
+  for (int c = 0; c < 3; ++c) {
+    e1[c] = vertices[1][c] - vertices[0][c];
+    e2[c] = vertices[2][c] - vertices[0][c];
+  }
+  constexpr int kNext[3] = {1, 2, 0}, kLast[3] = {2, 0, 1};
+  for (int c = 0; c < 3; ++c) {
+    const float p = e1[kNext[c]] * e2[kLast[c]], q = e1[kLast[c]] * e2[kNext[c]];
+    cross[c] = front ? p - q : q - p;
+    size[c] = std::fabs(p) + std::fabs(q);
+  }
+  bool all = true;
+  for (int i = 0; i < 3; ++i) {
+    const float* const n = vertices[i] + 3;
+    const float x = std::fabs(n[0]), y = std::fabs(n[1]), z = std::fabs(n[2]);
+    const float along = (n[0] * cross[0] + n[1] * cross[1]) + n[2] * cross[2];
+    const float magnitude = (x * size[0] + y * size[1]) + z * size[2];
+    const float squared = (n[0] * n[0] + n[1] * n[1]) + n[2] * n[2];
+    // False for NaN. The first four: lighting takes these components as they are and calls them usable.
+    all = all && x <= 0x1p40f && y <= 0x1p40f && z <= 0x1p40f && squared >= 0x1p-100f && magnitude <= 0x1p100f &&
+          along >= 0x1p-80f && along >= 0x1p-16f * magnitude;
+  }
+  return all;
+}
+
+uint32_t keeps_normals(int n, const float* const (*vertices)[3], uint32_t front) {
+  uint32_t kept = 0;
+  for (int k = 0; k < n; ++k) kept |= (keeps_normals_of(vertices[k], (front >> k & 1) != 0) ? 1u : 0u) << k;
+  return kept;
+}
+
 }  // namespace
 
 void fill_front_scalar(FrontKernels& table) {
   table.transform_vertices = transform_vertices;
   table.setup_triangles = setup_one_by_one;
+  table.keeps_normals = keeps_normals;
 }
 
 }  // namespace pac

@@ -70,6 +70,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(pixel, rgb_from_ycc420_row),
     PAC_KERNEL(front, transform_vertices),
     PAC_KERNEL(front, setup_triangles),
+    PAC_KERNEL(front, keeps_normals),
     PAC_KERNEL(tile, rasterize),
     PAC_KERNEL(tile, rasterize_all),
     PAC_KERNEL(tile, rasterize_grid),
