@@ -37,6 +37,10 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     task.coarse_columns = coarse.block_columns();
   }
   task.quantizers = quantizers.data();
+  if (!wanted.empty()) {
+    task.wanted = wanted.data();
+    task.lambdas = lambdas.data();
+  }
   task.vary_quantizers = options.effort == Effort::best && picture.quantizer_map.empty();
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
   task.candidates = picture.candidates.data();

@@ -10,13 +10,6 @@ constexpr double kCutShare = 0.6;  // of intra macroblocks in a P picture, from 
 
 }  // namespace
 
-// A frame of whole macroblocks is read where it is.
-void Encoder::State::set_source(const Frame420& frame) {
-  source_planes = Planes::of(source);
-  if (frame.width() % 16 != 0 || frame.height() % 16 != 0) return fill_planes(view_of(frame), source_planes);
-  source_planes = Planes::of(const_cast<Frame420&>(frame));  // only read from
-}
-
 PictureType Encoder::State::choose_type(const PictureOptions& picture) const {
   if (!in_sequence && !(picture.type == PictureType::P && picture.reference != nullptr)) return PictureType::I;
   if (picture.type) return *picture.type;
@@ -36,6 +29,16 @@ void Encoder::State::start_group(std::vector<uint8_t>& out) {
   write_group_header(group, out);
   in_sequence = true;
   temporal_reference = 0;
+}
+
+// From the group's first picture on.
+void Encoder::State::look_ahead(const Frame420& frame, const PictureOptions& picture) {
+  lookahead.forget();
+  frame_in_group = 0;
+  if (picture.following.empty() || has_rate) return;
+  const auto most = static_cast<size_t>(options.gop_length - 1);
+  lookahead.look(frame, picture.following.first(std::min(most, picture.following.size())), options.quantizer_scale,
+                 bands, kernels.motion, pool);
 }
 
 // Long before the limit of 132 codings [2.4.4.2] a macroblock's turn comes: one of kTurns pictures each.
@@ -90,7 +93,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
                                           const PictureOptions& picture) {
   if (const char* problem = problem_with_picture(frame, picture)) return Failure{Error::bad_argument, 0, problem};
   const size_t before = out.size();
-  set_source(frame);
+  source_planes = whole_macroblocks(frame, source);
   if (options.effort != Effort::fast) coarse.start_picture(source_planes);
   const bool free_quantizer = picture.quantizer_map.empty() && picture.quantizer_scale == 0;
   PictureType type = choose_type(picture);
@@ -102,6 +105,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     const bool starts_group = type == PictureType::I || !in_sequence || is_new_group;
     is_new_group = starts_group;
     if (starts_group) start_group(out);
+    if (starts_group) look_ahead(frame, picture);
     header_bytes = out.size() - before;
     if (has_rate) rate.start_picture(type);
     const double scale =
@@ -115,6 +119,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
   account(report, before, out);
   report.size_bytes = out.size() - before;
   finish_picture(type);
+  ++frame_in_group;
   return report;
 }
 

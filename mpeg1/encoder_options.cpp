@@ -40,10 +40,10 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
       pool(o.threads),
       columns(macroblock_columns(o.width)),
       rows(macroblock_rows(o.height)),
-      source(16 * columns, 16 * rows),
       reconstruction(16 * columns, 16 * rows),
       reference(16 * columns, 16 * rows),
-      coarse(columns, rows) {
+      coarse(columns, rows),
+      lookahead(columns, rows) {
   sequence.width = o.width;
   sequence.height = o.height;
   sequence.pel_aspect_ratio_code = o.pel_aspect_ratio_code;
@@ -131,6 +131,9 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
     return "reference has another size";
   if (picture.type && *picture.type != PictureType::I && *picture.type != PictureType::P)
     return "the encoder writes I and P pictures";
+  for (const Frame420* frame_after : picture.following)
+    if (frame_after == nullptr || frame_after->width() != options.width || frame_after->height() != options.height)
+      return "a frame that follows is missing or has another size";
   const size_t count = macroblocks.size();
   if (picture.candidates_per_macroblock < 0 ||
       picture.candidates.size() != count * static_cast<size_t>(picture.candidates_per_macroblock))

@@ -8,6 +8,7 @@
 #include "mpeg1/adapted_matrices.h"
 #include "mpeg1/coarse_motion.h"
 #include "mpeg1/headers.h"
+#include "mpeg1/lookahead.h"
 #include "mpeg1/macroblock_coder.h"
 #include "mpeg1/mpeg1.h"
 #include "mpeg1/rate_control.h"
@@ -28,6 +29,7 @@ struct Encoder::State {
   PictureType choose_type(const PictureOptions& picture) const;
   void start_group(std::vector<uint8_t>& out);
   double set_quantizers(PictureType type, const PictureOptions& picture, double scale);
+  double set_wanted(PictureType type, const float* scales, double scale);
   double reuse() const;
   double intra_scale(size_t macroblock) const;
   void watch_stillness(PictureType type);
@@ -42,7 +44,7 @@ struct Encoder::State {
   void age_macroblocks();
   void force_intra();
   void make_lambdas();
-  void set_source(const Frame420& frame);
+  void look_ahead(const Frame420& frame, const PictureOptions& picture);
   void set_rate();
   void set_matrices(const QuantizerMatrix& intra_matrix, const QuantizerMatrix& non_intra_matrix);
   void adapt_matrices();
@@ -58,6 +60,7 @@ struct Encoder::State {
   int columns, rows;
   SequenceHeader sequence;
   QuantizerSet intra, non_intra;
+  double lambda_of_one = 0;                              // of P at quantizer_scale 1
   int64_t lambda[2][32] = {};                            // of P and I, each quantizer_scale; see ResidualTask
   Frame420 source, reconstruction, reference, replaced;  // whole macroblocks
   Planes source_planes;                                  // of `source`, or of the caller's frame during add()
@@ -66,6 +69,9 @@ struct Encoder::State {
   std::vector<MotionVector> last_vectors;
   bool has_last_vectors = false;
   std::vector<uint8_t> quantizers;
+  Lookahead lookahead;
+  std::vector<float> wanted;     // quantizer_scale of each macroblock by the lookahead; empty: `quantizers` alone
+  std::vector<int64_t> lambdas;  // with them
   std::vector<uint8_t> bits_of_difference;
   std::vector<Band> bands;
   std::vector<BandBits> bits;
@@ -85,6 +91,7 @@ struct Encoder::State {
   bool in_sequence = false;    // a sequence header was written and no end
   int64_t picture_count = 0;   // of the sequence, for the time code
   int temporal_reference = 0;  // of the next picture in its group
+  int frame_in_group = 0;      // the same without repeated pictures
 };
 
 }  // namespace pac::mpeg1

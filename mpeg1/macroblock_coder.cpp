@@ -14,6 +14,9 @@
 namespace pac::mpeg1 {
 namespace {
 
+// Of quantizer_scale, that is worth its bits.
+constexpr float kLeastChange = 0.7F, kLeastShare = 0.2F;
+
 class BandCoder : private MacroblockPlace {
  public:
   BandCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band), fast_(task, band) {}
@@ -28,6 +31,7 @@ class BandCoder : private MacroblockPlace {
   void code_macroblock() {
     task_.macroblocks[address()] = {};
     if (column_ == 0 && row_ % task_.slice_rows == 0) last_quantizer_ = 0;
+    if (task_.wanted != nullptr) settle_quantizer();
     for (Attempt& attempt : attempts_) start(attempt, quantizer());
     const bool forced = task_.must_be_intra != nullptr && task_.must_be_intra[address()] != 0;
     if (task_.type == PictureType::I || forced) {
@@ -37,6 +41,15 @@ class BandCoder : private MacroblockPlace {
     } else {
       code_by_cost();
     }
+  }
+
+  // A change costs five bits and a longer type: that of the last coded macroblock stays while it is near.
+  void settle_quantizer() {
+    const float wanted = task_.wanted[address()];
+    const float near = std::max(kLeastChange, kLeastShare * wanted);
+    const bool stays = last_quantizer_ != 0 && std::abs(wanted - static_cast<float>(last_quantizer_)) < near;
+    const int rounded = static_cast<int>(wanted + 0.5F);
+    task_.quantizers[address()] = static_cast<uint8_t>(stays ? last_quantizer_ : std::clamp(rounded, 1, 31));
   }
 
   void start(Attempt& attempt, int attempted_quantizer) const {

@@ -18,8 +18,12 @@ struct PictureTask {
   Effort effort = Effort::normal;
   PictureType type = PictureType::I;
   int columns = 0, rows = 0, slice_rows = 0;
-  Planes source, reference, target;              // target: the reconstruction
-  const uint8_t* quantizers = nullptr;           // of each macroblock, raster order
+  Planes source, reference, target;  // target: the reconstruction
+  // Of each macroblock, raster order: quantizer_scale; if `wanted` is not null, that is what it should be, between
+  // integers, `lambdas` what a bit is worth then, and the band settles it.
+  uint8_t* quantizers = nullptr;
+  const float* wanted = nullptr;
+  const int64_t* lambdas = nullptr;
   bool vary_quantizers = false;                  // where another one costs less
   const MotionVector* last_vectors = nullptr;    // of the picture before, or null
   const MotionVector* coarse_vectors = nullptr;  // of each 2 x 2 macroblocks, coarse_columns a row, or null

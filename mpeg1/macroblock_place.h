@@ -24,7 +24,9 @@ class MacroblockPlace {
 
   int address() const { return row_ * task_.columns + column_; }
   int quantizer() const { return task_.quantizers[address()]; }
-  int64_t lambda() const { return task_.residual.lambda[quantizer()]; }
+  int64_t lambda() const {
+    return task_.lambdas != nullptr ? task_.lambdas[address()] : task_.residual.lambda[quantizer()];
+  }
   const uint8_t* source() const { return task_.source.at(0, column_, row_); }
   VectorRange range() const { return vector_range(task_.reference, column_, row_, task_.f_code); }
 

@@ -33,6 +33,7 @@ int keep_or_change(int before, double wanted) {
 void Encoder::State::make_lambdas() {
   double mean = 0;  // of the matrix, where most levels are
   for (size_t k = 1; k < 16; ++k) mean += sequence.non_intra_matrix[kNaturalFromZigzag[k]] / 15.0;
+  lambda_of_one = kDistortionScale * kLambda * (mean / 16) * (mean / 16);
   for (int q = 1; q < 32; ++q) {
     const double step = q * mean / 16;
     const double of_p = kDistortionScale * kLambda * step * step;
@@ -53,16 +54,35 @@ double Encoder::State::intra_scale(size_t macroblock) const {
   return mix(1, mix(kMovingIntraScale, kStillIntraScale, stillness), reuse());
 }
 
+// By the lookahead: between integers, settled macroblock by macroblock.
+double Encoder::State::set_wanted(PictureType type, const float* scales, double scale) {
+  const auto count = quantizers.size();
+  wanted.resize(count);
+  lambdas.resize(count);
+  const double share = type == PictureType::I ? mix(1, kIntraLambda, reuse()) : 1;
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const double q = std::max(1.0, scale * scales[i]);
+    wanted[i] = static_cast<float>(q);
+    lambdas[i] = std::max<int64_t>(1, static_cast<int64_t>(lambda_of_one * share * q * q));
+    sum += q;
+  }
+  return sum / static_cast<double>(count);
+}
+
 // Between integers the first part of the macroblocks has the smaller quantizer: few changes of it in the stream.
 double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
   const bool is_free = !has_rate && picture.quantizer_scale == 0;
+  const float* scales = is_free && picture.quantizer_map.empty() ? lookahead.scales(frame_in_group) : nullptr;
+  if (scales != nullptr) return set_wanted(type, scales, scale);
+  wanted.clear();
   double sum = 0;
   int before = 0;
   for (size_t i = 0; i < quantizers.size(); ++i) {
-    const double wanted = type == PictureType::I && is_free ? scale * intra_scale(i) : scale;
+    const double scaled = type == PictureType::I && is_free ? scale * intra_scale(i) : scale;
     const double position = (static_cast<double>(i) + 0.5) / static_cast<double>(quantizers.size());
-    before = is_free && type == PictureType::I ? keep_or_change(before, wanted + position - 0.5)
-                                               : std::clamp(static_cast<int>(std::floor(wanted + position)), 1, 31);
+    before = is_free && type == PictureType::I ? keep_or_change(before, scaled + position - 0.5)
+                                               : std::clamp(static_cast<int>(std::floor(scaled + position)), 1, 31);
     quantizers[i] = static_cast<uint8_t>(before);
     if (!picture.quantizer_map.empty()) quantizers[i] = picture.quantizer_map[i];
     sum += quantizers[i];

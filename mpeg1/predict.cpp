@@ -123,4 +123,13 @@ void fill_planes(const FrameView& frame, const Planes& target) {
   }
 }
 
+Planes whole_macroblocks(const Frame420& frame, Frame420& copy) {
+  if (frame.width() % 16 == 0 && frame.height() % 16 == 0) return Planes::of(const_cast<Frame420&>(frame));
+  const int width = (frame.width() + 15) / 16 * 16, height = (frame.height() + 15) / 16 * 16;
+  if (copy.width() != width || copy.height() != height) copy = Frame420(width, height);
+  const Planes planes = Planes::of(copy);
+  fill_planes(view_of(frame), planes);
+  return planes;
+}
+
 }  // namespace pac::mpeg1

@@ -53,5 +53,8 @@ void copy_macroblocks(const Planes& reference, int column, int row, int count, c
 
 // A caller's frame into planes of whole macroblocks; the edge is repeated outwards.
 void fill_planes(const FrameView& frame, const Planes& target);
+// A caller's frame in whole macroblocks, to be read only: where it is, if its sides are multiples of 16, or else in
+// `copy`, which gets the size for it.
+Planes whole_macroblocks(const Frame420& frame, Frame420& copy);
 
 }  // namespace pac::mpeg1

@@ -62,7 +62,8 @@ void judge(const Clip& clip, Coded& coded) {
   coded.ssim = similarity / static_cast<double>((clip.size() + 4) / 5 * 5);
 }
 
-Coded encode_ours(const Clip& clip, int quantizer, mpeg1::Effort effort) {
+// `looks_ahead`: the encoder knows the frames that follow.
+Coded encode_ours(const Clip& clip, int quantizer, mpeg1::Effort effort, bool looks_ahead) {
   mpeg1::SequenceOptions options;
   options.width = clip[0].width();
   options.height = clip[0].height();
@@ -73,8 +74,13 @@ Coded encode_ours(const Clip& clip, int quantizer, mpeg1::Effort effort) {
   auto encoder = mpeg1::Encoder::create(options);
   if (!encoder.ok()) return coded;
   const double start = cpu_seconds();
-  for (const Frame420& frame : clip)
-    if (!encoder->add(frame, coded.bytes).ok()) return coded;
+  for (size_t i = 0; i < clip.size(); ++i) {
+    mpeg1::PictureOptions picture;
+    std::vector<const Frame420*> following;
+    for (size_t k = i + 1; looks_ahead && k < std::min(clip.size(), i + kGroup); ++k) following.push_back(&clip[k]);
+    picture.following = following;
+    if (!encoder->add(clip[i], coded.bytes, picture).ok()) return coded;
+  }
   encoder->finish(coded.bytes);
   coded.seconds = cpu_seconds() - start;
   return coded;
@@ -318,17 +324,19 @@ Row compare(const std::string& path, bool with_slow_peers) {
   const auto av = [&](const AvSetting& setting) {
     return contend(clip, setting.name, [&](int q) { return encode_av(clip, q, setting); });
   };
-  const auto ours = [&](const char* name, mpeg1::Effort effort) {
-    return contend(clip, name, [&](int q) { return encode_ours(clip, q, effort); });
+  const auto ours = [&](const char* name, mpeg1::Effort effort, bool looks_ahead) {
+    return contend(clip, name, [&](int q) { return encode_ours(clip, q, effort, looks_ahead); });
   };
   all.push_back(av(kAvDefault));
   if (with_slow_peers) {
     all.push_back(av(kAvTrellis));
     all.push_back(av(kAvBest));
   }
-  all.push_back(ours("pac fast", mpeg1::Effort::fast));
-  all.push_back(ours("pac default", mpeg1::Effort::normal));
-  all.push_back(ours("pac best", mpeg1::Effort::best));
+  all.push_back(ours("pac fast", mpeg1::Effort::fast, false));
+  all.push_back(ours("pac default", mpeg1::Effort::normal, false));
+  all.push_back(ours("pac best", mpeg1::Effort::best, false));
+  all.push_back(ours("pac default, ahead", mpeg1::Effort::normal, true));
+  all.push_back(ours("pac best, ahead", mpeg1::Effort::best, true));
   row.decoding = compare_decoders(clip, all[0]);
   const double base_seconds = total_seconds(all[0]);
   const Curve base = curve_of(all[0].points);

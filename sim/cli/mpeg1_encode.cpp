@@ -1,6 +1,9 @@
 // `pac mpeg1 encode`.
 #include <algorithm>
 #include <cstdio>
+#include <deque>
+#include <optional>
+#include <vector>
 
 #include "base/y4m.h"
 #include "mpeg1/mpeg1.h"
@@ -15,6 +18,43 @@ struct EncodeSettings {
   std::string in, out;
   mpeg1::SequenceOptions sequence;
   int bit_rate_bps = 0;
+  int look_ahead = -1;  // frames; -1: the group, but not where encoding is to be fast
+};
+
+int look_ahead_frames(const EncodeSettings& settings, int rate) {
+  if (settings.bit_rate_bps != 0) return 0;
+  if (settings.look_ahead >= 0) return settings.look_ahead;
+  if (settings.sequence.effort == mpeg1::Effort::fast) return 0;
+  const int legal_rate = mpeg1::kPictureRatesMilli[settings.sequence.picture_rate_code];
+  return (settings.sequence.gop_length - 1) * std::min(rate, legal_rate) / legal_rate;  // others are repeated pictures
+}
+
+// Frames of a clip, and those that come after the one in work.
+class FrameWindow {
+ public:
+  FrameWindow(Y4mReader& reader, int look_ahead) : reader_(reader), look_ahead_(static_cast<size_t>(look_ahead)) {}
+
+  // The next frame; null where the clip ends. It stays until the next call.
+  Result<const Frame420*> next() {
+    if (!frames_.empty()) frames_.pop_front();
+    while (!is_over_ && frames_.size() <= look_ahead_) {
+      Frame420 frame;
+      PAC_TRY(const bool more, reader_.next(frame));
+      is_over_ = !more;
+      if (more) frames_.push_back(std::move(frame));
+    }
+    following_.clear();
+    for (size_t i = 1; i < frames_.size(); ++i) following_.push_back(&frames_[i]);
+    return frames_.empty() ? nullptr : &frames_[0];
+  }
+  const std::vector<const Frame420*>& following() const { return following_; }
+
+ private:
+  Y4mReader& reader_;
+  size_t look_ahead_;
+  bool is_over_ = false;
+  std::deque<Frame420> frames_;
+  std::vector<const Frame420*> following_;
 };
 
 // Frames in 1000 seconds, at least one; those of NTSC where the header tells none.
@@ -54,11 +94,14 @@ int encode(const Options& options, EncodeSettings settings) {
   std::vector<uint8_t> out;
   uint64_t frames = 0, repeated = 0;
   Progress progress(options.quiet || options.json);
-  for (Frame420 frame;;) {
-    const auto more = reader->next(frame);
-    if (!more.ok()) return data_error(settings.in, more.failure());
-    if (!*more) break;
-    const auto report = encoder->add(frame, out);
+  FrameWindow window(*reader, look_ahead_frames(settings, rate));
+  for (;;) {
+    const auto frame = window.next();
+    if (!frame.ok()) return data_error(settings.in, frame.failure());
+    if (*frame == nullptr) break;
+    mpeg1::PictureOptions picture;
+    picture.following = window.following();
+    const auto report = encoder->add(**frame, out, picture);
     if (!report.ok()) return data_error(settings.in, report.failure());
     ++frames;
     // So that a clip slower than any legal picture_rate keeps its duration.
@@ -102,6 +145,9 @@ int run_mpeg1_encode(Args args) {
       "--effort", settings.sequence.effort,
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
       "how hard to search (default: default)");
+  options.integer("--look-ahead", "N", settings.look_ahead, 0, 131,
+                  "frames to look at after each I picture, so that more bits go to what they go on showing; not with "
+                  "--bit-rate (default: the group; 0 with --effort fast)");
   if (const auto code = options.parse(args)) return *code;
   if (options.json && settings.out == "-") return options.usage_error("--json and -o - both want stdout");
   if (options.given("--bit-rate") && options.given("--quantizer-scale"))

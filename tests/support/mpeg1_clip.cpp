@@ -78,6 +78,27 @@ std::vector<uint8_t> encode_clip(const std::vector<Frame420>& frames, const mpeg
   return bytes;
 }
 
+std::vector<const Frame420*> frames_after(const std::vector<Frame420>& frames, size_t i) {
+  std::vector<const Frame420*> following;
+  for (size_t k = i + 1; k < frames.size(); ++k) following.push_back(&frames[k]);
+  return following;
+}
+
+std::vector<uint8_t> encode_known_clip(const std::vector<Frame420>& frames, const mpeg1::SequenceOptions& options,
+                                       Isa isa) {
+  auto encoder = mpeg1::Encoder::create(options, isa);
+  REQUIRE(encoder.ok());
+  std::vector<uint8_t> bytes;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const std::vector<const Frame420*> following = frames_after(frames, i);
+    mpeg1::PictureOptions picture;
+    picture.following = following;
+    REQUIRE(encoder->add(frames[i], bytes, picture).ok());
+  }
+  encoder->finish(bytes);
+  return bytes;
+}
+
 std::vector<Frame420> decode_all(std::span<const uint8_t> bytes, const mpeg1::DecoderOptions& options,
                                  mpeg1::ErrorReport* report, Isa isa) {
   mpeg1::Decoder decoder(options, isa);

@@ -19,6 +19,11 @@ std::vector<Frame420> clip(int width, int height, int n_frames, int seed = 0);
 // All frames through an encoder, sequence end included.
 std::vector<uint8_t> encode_clip(const std::vector<Frame420>& frames, const mpeg1::SequenceOptions& options,
                                  Isa isa = best_isa());
+// The same where the encoder knows all frames that follow.
+std::vector<uint8_t> encode_known_clip(const std::vector<Frame420>& frames, const mpeg1::SequenceOptions& options,
+                                       Isa isa = best_isa());
+// Those after frames[i].
+std::vector<const Frame420*> frames_after(const std::vector<Frame420>& frames, size_t i);
 
 // Every picture of a stream, in display order; `report` may be null. Fails the test where decoding fails.
 std::vector<Frame420> decode_all(std::span<const uint8_t> bytes, const mpeg1::DecoderOptions& options = {},
