@@ -1,5 +1,9 @@
 #include "sim/difference.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
 #include "base/kernels/kernels.h"
 
 namespace pac::sim {
@@ -17,16 +21,45 @@ bool same_size(const A& a, const B& b) {
   return a.width == b.width && a.height == b.height;
 }
 
-uint64_t fnv1a(uint64_t hash, const uint8_t* bytes, size_t count) {
-  for (size_t i = 0; i < count; ++i) hash = (hash ^ bytes[i]) * 0x100000001B3u;
-  return hash;
-}
+// Four words at a time, each in a lane of its own, so that no multiplication waits for the one before.
+class LaneHash {
+ public:
+  void add(uint64_t word, size_t lane) {
+    // One to one in the word: two pictures that differ in one word never collide.
+    lanes_[lane] = std::rotl(lanes_[lane] ^ word, 29) * 0x9E3779B97F4A7C15u;
+  }
 
-uint64_t fnv1a_u32(uint64_t hash, uint32_t value) {
-  const uint8_t bytes[4] = {static_cast<uint8_t>(value), static_cast<uint8_t>(value >> 8),
-                            static_cast<uint8_t>(value >> 16), static_cast<uint8_t>(value >> 24)};
-  return fnv1a(hash, bytes, sizeof bytes);
-}
+  // The bytes after the last whole word are filled up with zeros.
+  void add(const uint8_t* bytes, size_t count) {
+    size_t at = 0;
+    for (; at + 32 <= count; at += 32)
+      for (size_t lane = 0; lane < 4; ++lane) add(word_of(bytes + at + 8 * lane, 8), lane);
+    for (size_t lane = 0; at < count; at += 8, ++lane) add(word_of(bytes + at, std::min<size_t>(8, count - at)), lane);
+  }
+
+  uint64_t finish() const {
+    uint64_t hash = 0;
+    for (const uint64_t lane : lanes_) {
+      hash = (hash ^ lane) * 0xD6E8FEB86659FD93u;
+      hash ^= hash >> 32;
+    }
+    hash *= 0xD6E8FEB86659FD93u;
+    return hash ^ hash >> 32;
+  }
+
+ private:
+  static uint64_t word_of(const uint8_t* bytes, size_t count) {
+    uint64_t word = 0;
+    if constexpr (std::endian::native == std::endian::little) {
+      std::memcpy(&word, bytes, count);
+    } else {
+      for (size_t i = 0; i < count; ++i) word |= uint64_t{bytes[i]} << 8 * i;
+    }
+    return word;
+  }
+
+  uint64_t lanes_[4] = {1, 2, 3, 4};
+};
 
 }  // namespace
 
@@ -45,11 +78,10 @@ void composite_image(ConstRgbView low, ConstRgbView difference, RgbView composit
 }
 
 uint64_t image_hash(ConstRgbView image) {
-  uint64_t hash = 0xCBF29CE484222325u;
-  hash = fnv1a_u32(hash, static_cast<uint32_t>(image.width));
-  hash = fnv1a_u32(hash, static_cast<uint32_t>(image.height));
-  for (int y = 0; y < image.height; ++y) hash = fnv1a(hash, image.row(y), static_cast<size_t>(image.width) * 3);
-  return hash;
+  LaneHash hash;
+  hash.add(static_cast<uint64_t>(image.width) << 32 | static_cast<uint32_t>(image.height), 0);
+  for (int y = 0; y < image.height; ++y) hash.add(image.row(y), static_cast<size_t>(image.width) * 3);
+  return hash.finish();
 }
 
 }  // namespace pac::sim

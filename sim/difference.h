@@ -14,7 +14,7 @@ void difference_image(ConstRgbView high, ConstRgbView low, RgbView difference, I
 // C = clamp(L + 2 (D - 127)): what the client shows. `composite` may be `low` or `difference`.
 void composite_image(ConstRgbView low, ConstRgbView difference, RgbView composite, Isa isa = best_isa());
 
-// 64-bit FNV-1a over width, height (little-endian 32-bit) and the pixels in row order: equal on every machine.
+// 64 bits of width, height and the pixels in row order, equal on every machine: four lanes of multiplications, mixed.
 uint64_t image_hash(ConstRgbView image);
 
 }  // namespace pac::sim
