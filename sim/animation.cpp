@@ -107,7 +107,7 @@ Result<Animation> run_animation(SceneSet scene, const CameraPath& path, const An
   out.width = render.width > 0 ? render.width : scene.width;
   out.height = render.height > 0 ? render.height : scene.height;
   PAC_TRY(out.split, make_split(render.split.empty() ? scene.default_split : std::string_view(render.split), scene,
-                                {render.samples}));
+                                {render.samples, options.codec == VideoCodec::mpeg1}));
   if (options.codec == VideoCodec::mpeg1) {
     PAC_CHECK(run_mpeg1(std::move(scene), path, options, sink, out));
   } else {

@@ -64,14 +64,18 @@ Result<raster::RenderQuality> read_render_quality(ByteReader& reader) {
   const uint8_t shading = reader.u8(), texture = reader.u8(), samples = reader.u8(), cull = reader.u8();
   if (shading > static_cast<uint8_t>(raster::Shading::phong))
     return Failure{Error::corrupt, at, "unknown kind of shading"};
-  if (texture > 1 || cull > 1) return Failure{Error::corrupt, at + 1, "flag is neither 0 nor 1"};
+  const int shading_samples = cull >> 1;
+  if (texture > 1) return Failure{Error::corrupt, at + 1, "flag is neither 0 nor 1"};
   if (samples != 1 && samples != 4 && samples != 16 && samples != 64)
     return Failure{Error::corrupt, at + 2, "samples a pixel are not 1, 4, 16 or 64"};
+  if (shading_samples != 0 && ((shading_samples != 1 && shading_samples != 4) || shading_samples >= samples))
+    return Failure{Error::corrupt, at + 3, "shading samples a pixel are not 0, or 1 or 4 and fewer than samples"};
   raster::RenderQuality quality;
   quality.shading = static_cast<raster::Shading>(shading);
   quality.texture = texture != 0;
   quality.samples = samples;
-  quality.cull_back_faces = cull != 0;
+  quality.cull_back_faces = (cull & 1) != 0;
+  quality.shading_samples = shading_samples;
   return quality;
 }
 
@@ -248,7 +252,7 @@ Bytes write_session_message(const SessionMessage& message) {
   writer.u8(static_cast<uint8_t>(message.low.shading));
   writer.u8(message.low.texture ? 1 : 0);
   writer.u8(static_cast<uint8_t>(message.low.samples));
-  writer.u8(message.low.cull_back_faces ? 1 : 0);
+  writer.u8(static_cast<uint8_t>((message.low.cull_back_faces ? 1 : 0) | message.low.shading_samples << 1));
   for (int axis = 0; axis < 3; ++axis) writer.f32(message.background[axis]);
   writer.raw(message.model);
   return with_crc(writer);

@@ -1,6 +1,7 @@
 // The bytes between server and client: a session message (once) and one packet a frame. Little-endian throughout.
 //
 //   session  "PACM" version u16 flags u16 | width u32 height u32 | RenderQuality 4 x u8 | background 3 x f32
+//            (the fourth: 1 where back faces are culled, and twice RenderQuality::shading_samples)
 //            | resident model (to the end; absent where the model is transmitted) | CRC-32 u32
 //   frame    "PACF" version u16 codec u8 flags u8 | frame u32 | camera 19 x f32 | coded quality f64 | hash of L u64
 //            | model length u32 difference length u32 | where flag 2 says so: the objects' transforms against the

@@ -138,6 +138,7 @@ Result<Split> make_split(std::string_view names, const SceneSet& scene, const Sp
     if (!split.name.empty()) split.name += ',';
     split.name += kNames[part];
   }
+  if (options.quick_low && !split.low.texture && split.low.samples > 1) split.low.shading_samples = 1;
   return split;
 }
 

@@ -30,6 +30,10 @@ struct Split {
 
 struct SplitOptions {
   int samples = 16;  // of an antialiased side: 1, 4, 16 or 64 a pixel
+  // L's colors are computed once for each triangle of a pixel (RenderQuality::shading_samples = 1) where L is
+  // antialiased and untextured: about a third of the client's time for drawing. For video; stills are drawn as the
+  // paper drew them.
+  bool quick_low = false;
 };
 
 // The parts that make_split knows:

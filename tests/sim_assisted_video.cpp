@@ -37,7 +37,7 @@ constexpr Mode kModes[] = {{Prediction::none, Difference::halved},
 
 sim::Server make_server(const Mode& mode, int key_interval = 132, Isa isa = best_isa(), double quantizer = 6) {
   sim::SceneSet scene = test::small_scene(false);
-  const auto split = sim::make_split("texture", scene, {4});
+  const auto split = sim::make_split("texture", scene, {4, true});
   REQUIRE(split.ok());
   sim::ServerOptions options;
   options.width = 90;  // no multiple of 16
@@ -125,7 +125,7 @@ struct Wire {
 
   explicit Wire(bool is_packed) {
     const sim::SceneSet scene = test::small_scene(false);
-    const auto split = sim::make_split("texture", scene, {4});
+    const auto split = sim::make_split("texture", scene, {4, true});
     REQUIRE(split.ok());
     auto renderer = sim::FrameRenderer::create(scene, *split, false, 90, 71, 1, best_isa());
     REQUIRE(renderer.ok());
@@ -294,7 +294,7 @@ TEST_CASE("the quantizer for a size: within 1 % where there is one, an end of th
 
 TEST_CASE("video refuses what it cannot do") {
   sim::SceneSet scene = test::small_scene(false);
-  const auto split = sim::make_split("texture", scene, {4});
+  const auto split = sim::make_split("texture", scene, {4, true});
   sim::ServerOptions options;
   options.codec = sim::Codec::mpeg1;
   options.transmit_model = true;

@@ -214,6 +214,8 @@ TEST_CASE("a session message with a field out of range is refused by name") {
   CHECK(text(patched(session, 16, {3})) == "unknown kind of shading");
   CHECK(text(patched(session, 17, {2})) == "flag is neither 0 nor 1");
   CHECK(text(patched(session, 18, {5})) == "samples a pixel are not 1, 4, 16 or 64");
+  CHECK(text(patched(session, 19, {4})) == "shading samples a pixel are not 0, or 1 or 4 and fewer than samples");
+  CHECK(text(patched(session, 19, {32})) == "shading samples a pixel are not 0, or 1 or 4 and fewer than samples");
   CHECK(text(patched(session, 20, {0, 0, 0x80, 0x7F})) == "background is not finite");
   CHECK(text(patched(session, 6, {0})) == "session without a model has bytes of one");
   sim::ClientOptions small;

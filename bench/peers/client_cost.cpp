@@ -186,7 +186,7 @@ int main(int argc, char** argv) {
   options.codec = sim::Codec::mpeg1;
   options.video.quantizer_scale = number(argc, argv, 6, 10);
   options.threads = 1;
-  const sim::Split split = need(sim::make_split(split_name, scene.set), "split");
+  const sim::Split split = need(sim::make_split(split_name, scene.set, {.quick_low = true}), "split");
   sim::Server server = need(sim::Server::create(scene.set, split, options), "server");
   const Bytes session = server.session();
   StagedClient client(session, need(sim::read_session_message(session), "session"));

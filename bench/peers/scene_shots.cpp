@@ -118,7 +118,7 @@ NamedScene load_scene(const std::string& name) {
 }
 
 Sequence draw(NamedScene& scene, const std::string& split_name, int frames, int longer_side, int samples) {
-  const sim::Split split = need(sim::make_split(split_name, scene.set, {samples}), scene.name.c_str());
+  const sim::Split split = need(sim::make_split(split_name, scene.set, {samples, true}), scene.name.c_str());
   Sequence out;
   out.width = scene.set.width;
   out.height = scene.set.height;
