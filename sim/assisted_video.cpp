@@ -89,7 +89,7 @@ class SharedState {
 
   void composite(ConstRgbView low, RgbView shown) const {
     if (is_full_) {
-      composite_signed(low, predictor_.difference(0), predictor_.difference(1), predictor_.difference(2), shown);
+      composite_signed(low, predictor_.difference(0), predictor_.difference(1), predictor_.difference(2), shown, isa_);
       return;
     }
     rgb_from_frame420(coded_, shown, isa_);

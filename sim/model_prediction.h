@@ -15,33 +15,11 @@
 #include "base/image.h"
 #include "base/isa.h"
 #include "raster/scene.h"
+#include "sim/bordered_plane.h"
 #include "sim/model_flow.h"
+#include "sim/surface_map.h"
 
 namespace pac::sim {
-
-// A plane of 16-bit samples with a border of kWarpBorder on all sides that repeats the edge.
-class BorderedPlane {
- public:
-  static constexpr int kBorder = 8;
-  BorderedPlane() = default;
-  BorderedPlane(int width, int height) : image_(width + 2 * kBorder, height + 2 * kBorder) {}
-  int width() const { return image_.width() - 2 * kBorder; }
-  int height() const { return image_.height() - 2 * kBorder; }
-  ptrdiff_t stride() const { return image_.stride(); }
-  int16_t* row(int y) { return image_.row(y + kBorder) + kBorder; }
-  const int16_t* row(int y) const { return image_.row(y + kBorder) + kBorder; }
-  void extend();  // fills the border
-
- private:
-  Image<int16_t, 1> image_;
-};
-
-// Which surface each pixel shows, at the resolution of one component.
-struct SurfaceMap {
-  IdImage surface;   // 0 = background
-  DepthImage u;      // 1 - depth
-  GrayImage smooth;  // 1: the 6x6 taps around all lie on this surface, without a jump in depth
-};
 
 // Faces to surfaces: one number a material and object, so that differences flow across the edges of a mesh but not from
 // one material or object to another. Index = id of the rasterizer (face + 1); [0] is the background.
@@ -68,7 +46,7 @@ class ModelPredictor {
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr, const Frame420& base);
 
   // Per pixel the surface that L shows in the frame whose reference was asked for last; until keep().
-  PlaneView<const uint32_t> surface() const { return now_[0].surface.view(); }
+  PlaneView<const uint32_t> surface() const { return surface_.view(); }
 
   // The kept difference: luma and chroma.
   const BorderedPlane& difference(int component) const { return kept_[component]; }
@@ -79,7 +57,7 @@ class ModelPredictor {
   const PredictionStats& stats() const { return stats_; }
 
  private:
-  void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id, SurfaceMap& luma, SurfaceMap& chroma);
+  void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id);
   void carry(bool chroma, const Flow& flow, const Frame420& base);
 
   int width_, height_;
@@ -88,6 +66,7 @@ class ModelPredictor {
   bool has_kept_ = false;
   ModelFlow flow_;                 // to the frame whose reference was asked for last
   SurfaceMap now_[2], before_[2];  // luma, chroma
+  IdImage surface_;
   BorderedPlane kept_[3];
   Frame420 reference_;
   PredictionStats stats_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/image.h"
+#include "base/isa.h"
 #include "sim/model_prediction.h"
 
 namespace pac::sim {
@@ -10,6 +11,6 @@ namespace pac::sim {
 // triangle filter of base/kernels (signed), M the linear part of JFIF's RGB from YCbCr in 16-bit fixed point. The
 // planes' borders must be extended. L keeps its chroma edges: only the difference is subsampled.
 void composite_signed(ConstRgbView low, const BorderedPlane& y, const BorderedPlane& cb, const BorderedPlane& cr,
-                      RgbView composite);
+                      RgbView composite, Isa isa = best_isa());
 
 }  // namespace pac::sim

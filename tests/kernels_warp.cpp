@@ -83,41 +83,171 @@ TEST_CASE("the filter is equal on every instruction set, at the extremes of its 
   }
 }
 
-TEST_CASE("patches near edges are equal on every instruction set, at depths within and just beyond the tolerance") {
-  constexpr ptrdiff_t kStride = 40, kMapStride = 48;
-  constexpr int kRows = 12;
+constexpr ptrdiff_t kMapStride = 48;
+constexpr int kMapRows = 32, kMapBorder = 5;
+
+// Keys around one of surface 7 at half the depth: within and just beyond the tolerance, of another surface, at the
+// ends.
+uint32_t some_key(uint32_t& state, bool with_smooth) {
+  const uint32_t middle = 7u << 16 | 0x3F00u;
+  const uint32_t around[] = {middle,   middle + 12, middle - 12, middle + 13,        middle - 13,
+                             6u << 16, 0xFFFF3FFEu, 0,           8u << 16 | 0x3F00u, 7u << 16};
+  const uint32_t key = around[next_random(state) % 10];
+  return with_smooth && next_random(state) % 3 != 0 ? key | kKeySmooth : key;
+}
+
+TEST_CASE("places in the frame before are equal on every instruction set, inside, outside and nowhere") {
   const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
   uint32_t state = 13;
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
     for (int round = 0; round < 200; ++round) {
-      std::vector<int16_t> plane(kStride * kRows);
-      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
-      std::vector<uint32_t> surface(kMapStride * kRows);
-      for (uint32_t& number : surface) number = next_random(state) % 4 == 0 ? 0x80000001u : 7u;
-      std::vector<float> u(kMapStride * kRows);
-      for (float& value : u) {
-        const float around[] = {0.5f, 0.5f * 16 / 17, 0.5f * 16 / 15, 0.5f * 17 / 16, 0.0f, between(state, 0.4f, 0.6f)};
-        value = around[next_random(state) % 6];
+      std::vector<uint32_t> keys(kMapStride * kMapRows);
+      const int width = kMapStride - 2 * kMapBorder, height = kMapRows - 2 * kMapBorder;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          keys[static_cast<size_t>((y + kMapBorder) * kMapStride + x + kMapBorder)] = some_key(state, true);
+      const KeyMap map{keys.data() + kMapBorder * kMapStride + kMapBorder, kMapStride, width, height};
+      const auto n = static_cast<size_t>(round % 37);
+      std::vector<int32_t> x(n), y(n);
+      std::vector<float> u(n);
+      std::vector<uint32_t> now(n);
+      for (size_t i = 0; i < n; ++i) {
+        x[i] = static_cast<int32_t>(next_random(state) % (kMapStride * 64)) - 320;
+        y[i] = static_cast<int32_t>(next_random(state) % (kMapRows * 64)) - 320;
+        if (next_random(state) % 16 == 0) x[i] = y[i] = round % 2 == 0 ? kWarpNowhere : 1 << 24;
+        const float depths[] = {0.5f, 0.53f, 0.0f, -0.0f, -3.0f, 1e30f, 2e-20f, between(state, 0, 1)};
+        u[i] = depths[next_random(state) % 8];
+        now[i] = some_key(state, true);
       }
-      if (round % 8 == 3) u[kMapStride * 6 + 9] = std::numeric_limits<float>::quiet_NaN();
-      std::vector<EdgePoint> points(static_cast<size_t>(round % 9));
-      for (EdgePoint& point : points) {
-        const int x = static_cast<int>(next_random(state) % 20), y = static_cast<int>(next_random(state) % 6);
-        point = {static_cast<int32_t>(y * kStride + x), static_cast<int32_t>(y * kMapStride + x),
-                 next_random(state) % 5 == 0 ? 0x80000001u : 7u, round % 16 == 4 ? 0.0f : 0.5f,
-                 static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255)};
-      }
-      std::vector<int16_t> patches[2];
+      std::vector<int32_t> offset[2];
+      std::vector<uint8_t> bytes[2][3];
+      std::vector<uint32_t> wanted[2];
+      size_t special[2];
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
       for (int side = 0; side < 2; ++side) {
-        patches[side].assign(points.size() * kEdgePatch + 1, 99);
-        tables[side]->cut_patches(plane.data(), kStride, surface.data(), u.data(), kMapStride, points.data(),
-                                  points.size(), patches[side].data());
-        for (size_t i = 0; i < points.size() * kEdgePatch; ++i)
-          if (i % kWarpTapStride >= kWarpTaps) patches[side][i] = 0;  // may hold anything
+        offset[side].assign(n + 1, 77);
+        wanted[side].assign(n + 1, 77);
+        for (auto& array : bytes[side]) array.assign(n + 1, 77);
+        special[side] = tables[side]->place_points(map, 100, x.data(), y.data(), u.data(), now.data(), n,
+                                                   {offset[side].data(), bytes[side][0].data(), bytes[side][1].data(),
+                                                    bytes[side][2].data(), wanted[side].data()});
       }
-      REQUIRE(patches[0] == patches[1]);
+      REQUIRE(special[0] == special[1]);
+      REQUIRE(offset[0] == offset[1]);
+      REQUIRE(wanted[0] == wanted[1]);
+      for (int array = 0; array < 3; ++array) REQUIRE(bytes[0][array] == bytes[1][array]);
+    }
+  }
+}
+
+TEST_CASE("keys of surfaces and depths are equal on every instruction set, for ids beyond the table, too") {
+  const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  uint32_t state = 17;
+  const std::vector<uint32_t> surfaces = {0, 1, 65535, 65536, 70000, 3};
+  for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
+    if (kernels_for(isa) == nullptr) continue;
+    for (size_t n = 0; n < 40; ++n) {
+      std::vector<uint32_t> id(n);
+      std::vector<float> depth(n);
+      for (size_t i = 0; i < n; ++i) {
+        const uint32_t ids[] = {5, 6, 0xFFFFFFFFu, 0x80000000u, next_random(state) % 6};
+        id[i] = ids[next_random(state) % 5];
+        depth[i] = next_random(state) % 4 == 0 ? 1.0f : between(state, -0.5f, 1.5f);
+      }
+      std::vector<uint32_t> keys[2] = {std::vector<uint32_t>(n + 1, 9), std::vector<uint32_t>(n + 1, 9)};
+      scalar.surface_keys_row(id.data(), depth.data(), surfaces.data(), surfaces.size(), n, keys[0].data());
+      kernels_for(isa)->warp.surface_keys_row(id.data(), depth.data(), surfaces.data(), surfaces.size(), n,
+                                              keys[1].data());
+      REQUIRE(keys[0] == keys[1]);
+    }
+  }
+}
+
+TEST_CASE("points near edges are equal on every instruction set, at depths within and just beyond the tolerance") {
+  constexpr ptrdiff_t kStride = 40;
+  constexpr int kRows = 12;
+  const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  uint32_t state = 19;
+  for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
+    if (kernels_for(isa) == nullptr) continue;
+    for (int round = 0; round < 200; ++round) {
+      std::vector<int16_t> plane(kStride * kRows);
+      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+      std::vector<uint32_t> keys(kMapStride * kRows);
+      for (uint32_t& key : keys) key = some_key(state, true);
+      std::vector<WarpEdge> edges(static_cast<size_t>(round % 9));
+      for (WarpEdge& edge : edges) {
+        const int x = static_cast<int>(next_random(state) % 20), y = static_cast<int>(next_random(state) % 6);
+        edge = {static_cast<int32_t>(y * kStride + x),
+                static_cast<int32_t>(y * kMapStride + x),
+                some_key(state, false),
+                static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255),
+                static_cast<uint8_t>(next_random(state) % kWarpPhases),
+                static_cast<uint8_t>(next_random(state) % kWarpPhases)};
+      }
+      std::vector<int16_t> out[2];
+      const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
+      for (int side = 0; side < 2; ++side) {
+        out[side].assign(edges.size() + 1, 999);
+        tables[side]->filter_edge_points(plane.data(), kStride, keys.data(), kMapStride, sim::kWarpFilter.data(),
+                                         edges.data(), edges.size(), out[side].data());
+      }
+      REQUIRE(out[0] == out[1]);
+    }
+  }
+}
+
+TEST_CASE("points of one height are filtered as points of many are, on every instruction set") {
+  constexpr ptrdiff_t kStride = 64;
+  const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  uint32_t state = 23;
+  for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
+    if (kernels_for(isa) == nullptr) continue;
+    for (int round = 0; round < 100; ++round) {
+      std::vector<int16_t> plane(kStride * 8);
+      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+      constexpr size_t kPoints = 29;
+      std::vector<int32_t> offset(kPoints);
+      std::vector<uint8_t> phase_x(kPoints), phase_y(kPoints, static_cast<uint8_t>(round % kWarpPhases));
+      for (size_t i = 0; i < kPoints; ++i) {
+        const auto spread = static_cast<int32_t>(next_random(state) % (round % 3 == 0 ? 2 : 1));
+        offset[i] = static_cast<int32_t>(i) + spread + (round % 5 == 0 && i % 7 == 6 ? -1 : 0);
+        phase_x[i] = static_cast<uint8_t>(next_random(state) % kWarpPhases);
+      }
+      std::vector<int16_t> out[2] = {std::vector<int16_t>(kPoints), std::vector<int16_t>(kPoints)};
+      scalar.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(), phase_x.data(),
+                           phase_y.data(), kPoints, out[0].data());
+      kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(),
+                                           phase_x.data(), phase_y.data(), kPoints, out[1].data());
+      REQUIRE(out[0] == out[1]);
+    }
+  }
+}
+
+TEST_CASE("what is shown is equal on every instruction set, for every difference") {
+  const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  uint32_t state = 29;
+  for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
+    if (kernels_for(isa) == nullptr) continue;
+    for (size_t n = 0; n < 600; ++n) {
+      std::vector<uint8_t> low(3 * n);
+      std::vector<int16_t> d(n), u(n), v(n);
+      for (uint8_t& sample : low) sample = static_cast<uint8_t>(next_random(state));
+      for (size_t i = 0; i < n; ++i) {
+        d[i] = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+        u[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? i % 511 : next_random(state) % 511) - 255);
+        v[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? 510 - i : next_random(state) % 511) - 255);
+      }
+      std::vector<uint8_t> rgb[2] = {std::vector<uint8_t>(3 * n + 1, 9), std::vector<uint8_t>(3 * n + 1, 9)};
+      std::vector<uint8_t> sum[2] = {std::vector<uint8_t>(n + 1, 9), std::vector<uint8_t>(n + 1, 9)};
+      const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
+      for (int side = 0; side < 2; ++side) {
+        tables[side]->composite_signed_row(low.data(), d.data(), u.data(), v.data(), n, rgb[side].data());
+        tables[side]->add_carried_row(low.data(), d.data(), n, sum[side].data());
+      }
+      REQUIRE(rgb[0] == rgb[1]);
+      REQUIRE(sum[0] == sum[1]);
     }
   }
 }

@@ -65,6 +65,7 @@ void fill(Kernels& table, Isa isa) {
     fill_pixel_avx2(table.pixel);
     fill_front_avx2(table.front);
     fill_tile_avx2(table.tile);
+    fill_warp_avx2(table.warp);
   }
 #endif
 #ifdef PAC_HAVE_NEON
@@ -75,6 +76,7 @@ void fill(Kernels& table, Isa isa) {
     fill_pixel_neon(table.pixel);
     fill_front_neon(table.front);
     fill_tile_neon(table.tile);
+    fill_warp_neon(table.warp);
   }
 #endif
 }

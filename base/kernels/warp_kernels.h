@@ -19,18 +19,38 @@ constexpr int kWarpPhases = 64;    // a pixel
 constexpr int kWarpTapStride = 8;  // coefficients of one phase in the table; the last two are 0
 constexpr int32_t kWarpNowhere = INT32_MIN;
 
-// A point near the edge of what it shows, whose taps all lie inside the picture. Offsets are of its tap (-2, -2).
-struct EdgePoint {
-  int32_t plane_offset, map_offset;
-  uint32_t surface;  // that it shows
-  float u;           // 1 - depth there
-  int16_t stand_in;  // for taps that show something else, -255..255
+// What a pixel shows, in 32 bits: bits 16..31 the surface (modulo 2^16), bits 0..13 its depth (surface_keys_row), and
+// in maps of the frame before bit 14: the taps of the filter around a place between this pixel and the next ones all
+// show what it shows.
+constexpr uint32_t kKeyBits = 0xFFFF3FFF, kKeySurfaceBits = 0xFFFF0000, kKeySmooth = 0x4000;
+// Two pixels belong together where their keys, kKeyBits of them, differ by no more: the same surface, and u = 1 - depth
+// within 5 to 9 % of each other. The code of a depth is 7 bits of mantissa below its exponent, so that its steps follow
+// u.
+constexpr int32_t kKeyTolerance = 12;
+
+// The keys of the frame before; those within 5 of its sides can be read and are 0.
+struct KeyMap {
+  const uint32_t* keys;  // of pixel (0, 0)
+  ptrdiff_t stride;
+  int32_t width, height;
 };
 
-// Two points of a surface belong together where their u differ by at most this share of the larger.
-constexpr float kWarpDepthTolerance = 1.0f / 16;
+// Where the filter finds points. Arrays of n.
+struct WarpPlaces {
+  int32_t* offset;             // of the tap (-2, -2) in a plane of samples
+  uint8_t *phase_x, *phase_y;  // 0..63
+  uint8_t* state;              // kWarpPlain, kWarpEdge or kWarpAbsent; where not plain the three above are 0
+  uint32_t* wanted;            // kKeyBits of the key that is looked for
+};
+constexpr uint8_t kWarpAbsent = 0, kWarpEdge = 1, kWarpPlain = 2;
 
-constexpr int kEdgePatch = kWarpTaps * kWarpTapStride;  // samples of one point's patch: 6 rows of 8
+// A point whose taps show more than its own surface.
+struct WarpEdge {
+  int32_t offset, map_offset;  // of the tap (-2, -2) in the plane and in the map
+  uint32_t wanted;             // kKeyBits of the key that is looked for
+  int16_t stand_in;            // for samples that show something else
+  uint8_t phase_x, phase_y;
+};
 
 struct WarpKernels {
   // Positions of n pixels, any n >= 0: x_64 = floor(64 x / w + 0.5), clamped to +-2^24 before (y_64 alike), and
@@ -39,25 +59,48 @@ struct WarpKernels {
   void (*reproject_row)(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                         float* u_before);
 
+  // keys[i] = surface << 16 | code, where the surface is surfaces[id[i]], 0 beyond the table of n_surfaces >= 1, and
+  // the code the upper 16 bits of u = min(max(1 - depth[i], 0), 1.9921875) in float, which are below 2^14.
+  void (*surface_keys_row)(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces,
+                           size_t n, uint32_t* keys);
+
+  // Looks n pixels up in the frame before. Pixel i was at (x_64[i], y_64[i]), in 1/64, with 1 - depth u_before[i] (no
+  // NaN), and shows the surface of now[i]: wanted = that surface and the code of u_before. Absent where the nearest
+  // pixel, floor((x_64 + 32) / 64), is outside the map; plain where the key at the floors of x_64 / 64 and y_64 / 64 is
+  // smooth and differs from the wanted one by kKeyTolerance at most; else edge. Of a plain one
+  //   offset = (floor of y - 2) * plane_stride + (floor of x - 2), phase = x_64 mod 64, y_64 mod 64.
+  // Returns how many are not plain.
+  size_t (*place_points)(const KeyMap& before, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
+                         const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out);
+
   // n points of a plane of 16-bit samples in -255..255. Point i starts at plane + offset[i] (its tap -2, -2; rows are
-  // `stride` apart), at the phases phase_x[i] and phase_y[i] (0..63), rows of `taps` [kWarpPhases][kWarpTapStride]
-  // whose sum is 128 and whose absolute sum is at most 255:
+  // `stride` apart), at the phases phase_x[i] and phase_y[i], rows of `taps` [kWarpPhases][kWarpTapStride] whose sum
+  // is 128 and whose absolute sum is at most 255:
   //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 1) >> 1        fits 16 bits
   //   out[i] = (sum over j of taps[phase_x][j] * v[j] + 4096) >> 13
-  // Reads 8 samples of each of the 6 rows.
+  // Reads up to 16 samples of each of the 6 rows.
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
                         const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out);
 
-  // The samples around n points, point i in patches[i * kEdgePatch ...], as filter_points wants them with a stride of
-  // 8: where the maps (rows `map_stride` apart) hold the point's surface, and a u with |u - point's| <=
-  // kWarpDepthTolerance * (the larger one), the plane's; elsewhere the stand_in. Columns 6 and 7 hold anything. Reads 8
-  // entries of each of the 6 rows.
-  void (*cut_patches)(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u,
-                      ptrdiff_t map_stride, const EdgePoint* points, size_t n, int16_t* patches);
+  // As filter_points where some taps show something else: samples whose keys in the map (rows are map_stride apart)
+  // differ from the wanted one by more than kKeyTolerance count as stand_in. Reads 8 keys of each of the 6 rows, too.
+  void (*filter_edge_points)(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                             const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out);
+
+  // out[i] = min(max(base[i] + carried[i], 0), 255), carried in -32000..32000. Any n and alignment.
+  void (*add_carried_row)(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out);
+
+  // n pixels of a picture and of a difference, luma d and chroma u and v in -255..255, to what is shown, interleaved:
+  //   r = clamp(low_r + d + ((91881 v + 32768) >> 16)),  g = clamp(low_g + d + ((-22554 u - 46802 v + 32768) >> 16)),
+  //   b = clamp(low_b + d + ((116130 u + 32768) >> 16))     to 0..255. Any n and alignment; rgb may be low.
+  void (*composite_signed_row)(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+                               uint8_t* rgb);
 };
 
 // One per instruction set: overwrites the entries that it improves.
 void fill_warp_scalar(WarpKernels& table);
 void fill_warp_sse41(WarpKernels& table);
+void fill_warp_avx2(WarpKernels& table);
+void fill_warp_neon(WarpKernels& table);
 
 }  // namespace pac

@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 
 #include "base/kernels/warp_kernels.h"
@@ -30,6 +31,38 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
   }
 }
 
+uint32_t depth_code(float u) {
+  const float bounded = u < 0.0f ? 0.0f : u > 1.9921875f ? 1.9921875f : u;
+  return std::bit_cast<uint32_t>(bounded + 0.0f) >> 16;
+}
+
+void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
+                      uint32_t* keys) {
+  for (size_t i = 0; i < n; ++i)
+    keys[i] = (id[i] < n_surfaces ? surfaces[id[i]] << 16 : 0) | depth_code(1.0f - depth[i]);
+}
+
+size_t place_points(const KeyMap& before, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
+                    const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out) {
+  size_t not_plain = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const int32_t x = x_64[i] >> 6, y = y_64[i] >> 6;
+    const uint32_t wanted = (now[i] & kKeySurfaceBits) | depth_code(u_before[i]);
+    const int32_t near_x = (x_64[i] + kWarpPhases / 2) >> 6, near_y = (y_64[i] + kWarpPhases / 2) >> 6;
+    const bool is_inside = near_x >= 0 && near_y >= 0 && near_x < before.width && near_y < before.height;
+    const uint32_t key = is_inside ? before.keys[y * before.stride + x] : 0;
+    const auto apart = static_cast<int32_t>((key & kKeyBits) - wanted);
+    const bool is_plain = (key & kKeySmooth) != 0 && apart <= kKeyTolerance && apart >= -kKeyTolerance;
+    out.wanted[i] = wanted;
+    out.state[i] = is_plain ? kWarpPlain : is_inside ? kWarpEdge : kWarpAbsent;
+    out.offset[i] = is_plain ? static_cast<int32_t>((y - kWarpTapsBefore) * plane_stride) + x - kWarpTapsBefore : 0;
+    out.phase_x[i] = static_cast<uint8_t>(is_plain ? x_64[i] & (kWarpPhases - 1) : 0);
+    out.phase_y[i] = static_cast<uint8_t>(is_plain ? y_64[i] & (kWarpPhases - 1) : 0);
+    if (!is_plain) ++not_plain;
+  }
+  return not_plain;
+}
+
 int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x, const int16_t* taps_y) {
   int32_t sum = 4096;
   for (int j = 0; j < kWarpTaps; ++j) {
@@ -47,19 +80,38 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
         filter_point(plane + offset[i], stride, taps + kWarpTapStride * phase_x[i], taps + kWarpTapStride * phase_y[i]);
 }
 
-void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u, ptrdiff_t map_stride,
-                 const EdgePoint* points, size_t n, int16_t* patches) {
+void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
   for (size_t i = 0; i < n; ++i) {
-    const EdgePoint& point = points[i];
+    const WarpEdge& edge = edges[i];
+    int16_t patch[kWarpTaps * kWarpTapStride];
     for (int k = 0; k < kWarpTaps; ++k)
       for (int j = 0; j < kWarpTaps; ++j) {
-        const ptrdiff_t at = point.map_offset + k * map_stride + j;
-        const float larger = u[at] > point.u ? u[at] : point.u;
-        const bool same_depth = std::fabs(u[at] - point.u) <= kWarpDepthTolerance * larger;
-        const bool is_shown = surface[at] == point.surface && same_depth;
-        patches[static_cast<ptrdiff_t>(i) * kEdgePatch + k * kWarpTapStride + j] =
-            is_shown ? plane[point.plane_offset + k * stride + j] : point.stand_in;
+        const uint32_t key = map[edge.map_offset + k * map_stride + j] & kKeyBits;
+        const auto apart = static_cast<int32_t>(key - edge.wanted);
+        patch[k * kWarpTapStride + j] =
+            apart <= kKeyTolerance && apart >= -kKeyTolerance ? plane[edge.offset + k * stride + j] : edge.stand_in;
       }
+    out[i] =
+        filter_point(patch, kWarpTapStride, taps + kWarpTapStride * edge.phase_x, taps + kWarpTapStride * edge.phase_y);
+  }
+}
+
+uint8_t to_byte(int value) {
+  return static_cast<uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
+}
+
+void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
+  for (size_t i = 0; i < n; ++i) out[i] = to_byte(base[i] + carried[i]);
+}
+
+void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+                          uint8_t* rgb) {
+  constexpr int kHalf = 1 << 15;
+  for (size_t i = 0; i < n; ++i) {
+    rgb[3 * i] = to_byte(low[3 * i] + d[i] + ((91881 * v[i] + kHalf) >> 16));
+    rgb[3 * i + 1] = to_byte(low[3 * i + 1] + d[i] + ((-22554 * u[i] - 46802 * v[i] + kHalf) >> 16));
+    rgb[3 * i + 2] = to_byte(low[3 * i + 2] + d[i] + ((116130 * u[i] + kHalf) >> 16));
   }
 }
 
@@ -68,7 +120,11 @@ void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface
 void fill_warp_scalar(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.filter_points = filter_points;
-  table.cut_patches = cut_patches;
+  table.surface_keys_row = surface_keys_row;
+  table.place_points = place_points;
+  table.filter_edge_points = filter_edge_points;
+  table.add_carried_row = add_carried_row;
+  table.composite_signed_row = composite_signed_row;
 }
 
 }  // namespace pac

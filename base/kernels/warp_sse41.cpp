@@ -96,33 +96,108 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
   }
 }
 
-// 0xFFFFFFFF where four taps show the point's surface at its depth.
-inline __m128i shown(const uint32_t* surface, const float* u, const EdgePoint& point) {
-  const __m128 wanted = _mm_set1_ps(point.u), at = _mm_loadu_ps(u);
-  const __m128 larger = _mm_mul_ps(_mm_set1_ps(kWarpDepthTolerance), _mm_max_ps(at, wanted));
-  const __m128 distance = _mm_andnot_ps(_mm_set1_ps(-0.0f), _mm_sub_ps(at, wanted));
-  const __m128i same = _mm_cmpeq_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(surface)),
-                                       _mm_set1_epi32(static_cast<int>(point.surface)));
-  return _mm_and_si128(same, _mm_castps_si128(_mm_cmple_ps(distance, larger)));
+inline __m128i load(const uint32_t* at) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(at));
 }
 
-void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface, const float* u, ptrdiff_t map_stride,
-                 const EdgePoint* points, size_t n, int16_t* patches) {
+// 0xFFFFFFFF where keys without their smooth bits belong to the wanted one.
+inline __m128i belongs(__m128i key, __m128i wanted) {
+  const __m128i apart = _mm_sub_epi32(_mm_and_si128(key, _mm_set1_epi32(static_cast<int>(kKeyBits))), wanted);
+  const __m128i from_low = _mm_add_epi32(apart, _mm_set1_epi32(kKeyTolerance));
+  return _mm_cmpeq_epi32(_mm_min_epu32(from_low, _mm_set1_epi32(2 * kKeyTolerance)), from_low);
+}
+
+void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
   for (size_t i = 0; i < n; ++i) {
-    const EdgePoint& point = points[i];
-    const int16_t* samples = plane + point.plane_offset;
-    const uint32_t* surfaces = surface + point.map_offset;
-    const float* depths = u + point.map_offset;
-    const __m128i stand_in = _mm_set1_epi16(point.stand_in);
+    const WarpEdge& edge = edges[i];
+    const __m128i wanted = _mm_set1_epi32(static_cast<int>(edge.wanted)), stand_in = _mm_set1_epi16(edge.stand_in);
+    int16_t patch[kWarpTaps * kWarpTapStride];
     for (int k = 0; k < kWarpTaps; ++k) {
-      const __m128i mask = _mm_packs_epi32(shown(surfaces, depths, point), shown(surfaces + 4, depths + 4, point));
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(patches), _mm_blendv_epi8(stand_in, load(samples), mask));
-      samples += stride;
-      surfaces += map_stride;
-      depths += map_stride;
-      patches += kWarpTapStride;
+      const uint32_t* keys = map + edge.map_offset + k * map_stride;
+      const __m128i mask = _mm_packs_epi32(belongs(load(keys), wanted), belongs(load(keys + 4), wanted));
+      const __m128i samples = load(plane + edge.offset + k * stride);
+      _mm_storeu_si128(reinterpret_cast<__m128i*>(patch + k * kWarpTapStride),
+                       _mm_blendv_epi8(stand_in, samples, mask));
     }
+    constexpr int32_t kNoOffset = 0;
+    filter_points(patch, kWarpTapStride, taps, &kNoOffset, &edge.phase_x, &edge.phase_y, 1, out + i);
   }
+}
+
+void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
+  const auto eight = [](const uint8_t* from, const int16_t* added) {
+    const __m128i wide = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
+    const __m128i sum = _mm_add_epi16(wide, load(added));
+    return _mm_packus_epi16(sum, sum);
+  };
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8) _mm_storel_epi64(reinterpret_cast<__m128i*>(out + i), eight(base + i, carried + i));
+  if (i == n) return;
+  uint8_t last_base[8] = {}, last_out[8];
+  int16_t last_carried[8] = {};
+  __builtin_memcpy(last_base, base + i, n - i);
+  __builtin_memcpy(last_carried, carried + i, (n - i) * sizeof(int16_t));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(last_out), eight(last_base, last_carried));
+  __builtin_memcpy(out + i, last_out, n - i);
+}
+
+// (a x + b y + 32768) >> 16 of 16-bit lanes, a and b within 16 bits.
+inline __m128i rounded_sum(__m128i x, int a, __m128i y, int b) {
+  const __m128i factors =
+      _mm_set1_epi32(static_cast<int>(static_cast<uint32_t>(b) << 16 | (static_cast<uint32_t>(a) & 0xFFFF)));
+  const __m128i half = _mm_set1_epi32(1 << 15);
+  const __m128i low = _mm_add_epi32(_mm_madd_epi16(_mm_unpacklo_epi16(x, y), factors), half);
+  const __m128i high = _mm_add_epi32(_mm_madd_epi16(_mm_unpackhi_epi16(x, y), factors), half);
+  return _mm_packs_epi32(_mm_srai_epi32(low, 16), _mm_srai_epi32(high, 16));
+}
+
+// Eight pixels, 24 bytes. 91881 = 65536 + 26345, 116130 = 131072 - 14942 and -46802 = -65536 + 18734: whole numbers of
+// v and u stay outside of the products.
+inline void composite_eight(const uint8_t* low, const int16_t* difference, const int16_t* chroma_u,
+                            const int16_t* chroma_v, uint8_t* rgb) {
+  const __m128i first = _mm_loadu_si128(reinterpret_cast<const __m128i*>(low));
+  const __m128i last = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(low + 16));
+  const auto channel = [&](__m128i from_first, __m128i from_last, __m128i added) {
+    const __m128i bytes = _mm_or_si128(_mm_shuffle_epi8(first, from_first), _mm_shuffle_epi8(last, from_last));
+    const __m128i sum = _mm_add_epi16(bytes, added);
+    return _mm_packus_epi16(sum, sum);
+  };
+  const __m128i d = load(difference), u = load(chroma_u), v = load(chroma_v);
+  const __m128i red = _mm_add_epi16(_mm_add_epi16(d, v), rounded_sum(v, 26345, u, 0));
+  const __m128i green = _mm_add_epi16(_mm_sub_epi16(d, v), rounded_sum(u, -22554, v, 18734));
+  const __m128i blue = _mm_add_epi16(_mm_add_epi16(d, _mm_add_epi16(u, u)), rounded_sum(u, -14942, v, 0));
+  const __m128i r = channel(_mm_setr_epi8(0, -1, 3, -1, 6, -1, 9, -1, 12, -1, 15, -1, -1, -1, -1, -1),
+                            _mm_setr_epi8(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 2, -1, 5, -1), red);
+  const __m128i g = channel(_mm_setr_epi8(1, -1, 4, -1, 7, -1, 10, -1, 13, -1, -1, -1, -1, -1, -1, -1),
+                            _mm_setr_epi8(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0, -1, 3, -1, 6, -1), green);
+  const __m128i b = channel(_mm_setr_epi8(2, -1, 5, -1, 8, -1, 11, -1, 14, -1, -1, -1, -1, -1, -1, -1),
+                            _mm_setr_epi8(-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 1, -1, 4, -1, 7, -1), blue);
+  const __m128i rg = _mm_unpacklo_epi8(r, g);
+  const auto place = [&](__m128i from_rg, __m128i from_b) {
+    return _mm_or_si128(_mm_shuffle_epi8(rg, from_rg), _mm_shuffle_epi8(b, from_b));
+  };
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(rgb),
+                   place(_mm_setr_epi8(0, 1, -1, 2, 3, -1, 4, 5, -1, 6, 7, -1, 8, 9, -1, 10),
+                         _mm_setr_epi8(-1, -1, 0, -1, -1, 1, -1, -1, 2, -1, -1, 3, -1, -1, 4, -1)));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(rgb + 16),
+                   place(_mm_setr_epi8(11, -1, 12, 13, -1, 14, 15, -1, -1, -1, -1, -1, -1, -1, -1, -1),
+                         _mm_setr_epi8(-1, 5, -1, -1, 6, -1, -1, 7, -1, -1, -1, -1, -1, -1, -1, -1)));
+}
+
+void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+                          uint8_t* rgb) {
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8) composite_eight(low + 3 * i, d + i, u + i, v + i, rgb + 3 * i);
+  if (i == n) return;
+  uint8_t last_low[24] = {}, last_rgb[24];
+  int16_t last[3][8] = {};
+  __builtin_memcpy(last_low, low + 3 * i, 3 * (n - i));
+  __builtin_memcpy(last[0], d + i, (n - i) * sizeof(int16_t));
+  __builtin_memcpy(last[1], u + i, (n - i) * sizeof(int16_t));
+  __builtin_memcpy(last[2], v + i, (n - i) * sizeof(int16_t));
+  composite_eight(last_low, last[0], last[1], last[2], last_rgb);
+  __builtin_memcpy(rgb + 3 * i, last_rgb, 3 * (n - i));
 }
 
 }  // namespace
@@ -130,7 +205,9 @@ void cut_patches(const int16_t* plane, ptrdiff_t stride, const uint32_t* surface
 void fill_warp_sse41(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.filter_points = filter_points;
-  table.cut_patches = cut_patches;
+  table.filter_edge_points = filter_edge_points;
+  table.add_carried_row = add_carried_row;
+  table.composite_signed_row = composite_signed_row;
 }
 
 }  // namespace pac

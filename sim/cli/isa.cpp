@@ -98,7 +98,11 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
     PAC_KERNEL(warp, filter_points),
-    PAC_KERNEL(warp, cut_patches),
+    PAC_KERNEL(warp, surface_keys_row),
+    PAC_KERNEL(warp, place_points),
+    PAC_KERNEL(warp, filter_edge_points),
+    PAC_KERNEL(warp, add_carried_row),
+    PAC_KERNEL(warp, composite_signed_row),
 };
 
 // The first instruction set, in ascending order, whose table holds the same function: its file exports it.

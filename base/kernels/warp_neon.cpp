@@ -1,0 +1,173 @@
+// Four pixels at a time; the filter takes one point, its columns in the eight lanes of a register.
+#include <arm_neon.h>
+
+#include <cstddef>
+#include <cstdint>
+
+#include "base/kernels/warp_kernels.h"
+
+namespace pac {
+namespace {
+
+// ---- Places ----
+
+inline float32x4_t coordinate(const ReprojectionRow& row, int c, float32x4_t column, float32x4_t u) {
+  const float32x4_t across = vaddq_f32(vdupq_n_f32(row.origin[c]), vmulq_f32(column, vdupq_n_f32(row.per_pixel[c])));
+  return vaddq_f32(across, vmulq_f32(u, vdupq_n_f32(row.per_depth[c])));
+}
+
+inline int32x4_t in_64ths(float32x4_t position, uint32x4_t somewhere) {
+  const float32x4_t largest = vdupq_n_f32(262144.0f);
+  const float32x4_t clamped = vmaxq_f32(vminq_f32(position, largest), vnegq_f32(largest));
+  const float32x4_t rounded = vrndmq_f32(vaddq_f32(vmulq_f32(clamped, vdupq_n_f32(64.0f)), vdupq_n_f32(0.5f)));
+  return vbslq_s32(somewhere, vcvtq_s32_f32(rounded), vdupq_n_s32(kWarpNowhere));
+}
+
+inline void reproject(const ReprojectionRow& row, float32x4_t column, float32x4_t depth, int32_t* x_64, int32_t* y_64,
+                      float* u_before) {
+  const float32x4_t u = vsubq_f32(vdupq_n_f32(1.0f), depth);
+  const float32x4_t w = coordinate(row, 3, column, u);
+  const float32x4_t x = vdivq_f32(coordinate(row, 0, column, u), w);
+  const float32x4_t y = vdivq_f32(coordinate(row, 1, column, u), w);
+  const float32x4_t before = vdivq_f32(coordinate(row, 2, column, u), w);
+  const uint32x4_t numbers = vandq_u32(vandq_u32(vceqq_f32(x, x), vceqq_f32(y, y)), vceqq_f32(before, before));
+  const uint32x4_t somewhere = vandq_u32(vcgtq_f32(w, vdupq_n_f32(8.6736174e-19f)), numbers);
+  vst1q_s32(x_64, in_64ths(x, somewhere));
+  vst1q_s32(y_64, in_64ths(y, somewhere));
+  vst1q_f32(u_before, vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(before), somewhere)));
+}
+
+void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
+                   float* u_before) {
+  const float first[4] = {0, 1, 2, 3};
+  float32x4_t column = vld1q_f32(first);
+  size_t i = 0;
+  for (; i + 4 <= n; i += 4) {
+    reproject(row, column, vld1q_f32(depth + i), x_64 + i, y_64 + i, u_before + i);
+    column = vaddq_f32(column, vdupq_n_f32(4.0f));  // exact below 2^24
+  }
+  if (i == n) return;
+  float last_depth[4] = {}, last_u[4];
+  int32_t last_x[4], last_y[4];
+  __builtin_memcpy(last_depth, depth + i, (n - i) * sizeof(float));
+  reproject(row, column, vld1q_f32(last_depth), last_x, last_y, last_u);
+  __builtin_memcpy(x_64 + i, last_x, (n - i) * sizeof(int32_t));
+  __builtin_memcpy(y_64 + i, last_y, (n - i) * sizeof(int32_t));
+  __builtin_memcpy(u_before + i, last_u, (n - i) * sizeof(float));
+}
+
+// ---- Filter ----
+
+// rows(k): eight samples of row k of the patch.
+template <class Rows>
+inline int16_t filter_point(const Rows& rows, const int16_t* taps_x, const int16_t* taps_y) {
+  int32x4_t low = vdupq_n_s32(1), high = low;
+  for (int k = 0; k < kWarpTaps; ++k) {
+    const int16x8_t row = rows(k);
+    low = vmlal_n_s16(low, vget_low_s16(row), taps_y[k]);
+    high = vmlal_n_s16(high, vget_high_s16(row), taps_y[k]);
+  }
+  // Columns 6 and 7 may not fit 16 bits where they hold anything, but their coefficients are 0.
+  const int16x8_t x = vld1q_s16(taps_x);
+  const int32x4_t sums = vmlal_s16(vmull_s16(vmovn_s32(vshrq_n_s32(low, 1)), vget_low_s16(x)),
+                                   vmovn_s32(vshrq_n_s32(high, 1)), vget_high_s16(x));
+  return static_cast<int16_t>((vaddvq_s32(sums) + 4096) >> 13);
+}
+
+void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
+                   const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out) {
+  for (size_t i = 0; i < n; ++i) {
+    const int16_t* at = plane + offset[i];
+    out[i] = filter_point([&](int k) { return vld1q_s16(at + k * stride); }, taps + kWarpTapStride * phase_x[i],
+                          taps + kWarpTapStride * phase_y[i]);
+  }
+}
+
+// 0xFFFFFFFF where keys without their smooth bits belong to the wanted one.
+inline uint32x4_t belongs(const uint32_t* keys, uint32x4_t wanted) {
+  const uint32x4_t apart = vsubq_u32(vandq_u32(vld1q_u32(keys), vdupq_n_u32(kKeyBits)), wanted);
+  return vcleq_u32(vaddq_u32(apart, vdupq_n_u32(kKeyTolerance)), vdupq_n_u32(2 * kKeyTolerance));
+}
+
+void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
+  for (size_t i = 0; i < n; ++i) {
+    const WarpEdge& edge = edges[i];
+    const uint32x4_t wanted = vdupq_n_u32(edge.wanted);
+    const int16x8_t stand_in = vdupq_n_s16(edge.stand_in);
+    const auto row = [&](int k) {
+      const uint32_t* keys = map + edge.map_offset + k * map_stride;
+      const uint16x8_t mask = vcombine_u16(vmovn_u32(belongs(keys, wanted)), vmovn_u32(belongs(keys + 4, wanted)));
+      return vbslq_s16(mask, vld1q_s16(plane + edge.offset + k * stride), stand_in);
+    };
+    out[i] = filter_point(row, taps + kWarpTapStride * edge.phase_x, taps + kWarpTapStride * edge.phase_y);
+  }
+}
+
+// ---- Rows ----
+
+inline void add_eight(const uint8_t* base, const int16_t* carried, uint8_t* out) {
+  const int16x8_t wide = vreinterpretq_s16_u16(vmovl_u8(vld1_u8(base)));
+  vst1_u8(out, vqmovun_s16(vaddq_s16(wide, vld1q_s16(carried))));
+}
+
+void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8) add_eight(base + i, carried + i, out + i);
+  if (i == n) return;
+  uint8_t last_base[8] = {}, last_out[8];
+  int16_t last_carried[8] = {};
+  __builtin_memcpy(last_base, base + i, n - i);
+  __builtin_memcpy(last_carried, carried + i, (n - i) * sizeof(int16_t));
+  add_eight(last_base, last_carried, last_out);
+  __builtin_memcpy(out + i, last_out, n - i);
+}
+
+// (a x + b y + 32768) >> 16; whole numbers of x and y are added outside, see composite_eight().
+inline int16x8_t rounded_sum(int16x8_t x, int16_t a, int16x8_t y, int16_t b) {
+  const int32x4_t low = vmlal_n_s16(vmull_n_s16(vget_low_s16(x), a), vget_low_s16(y), b);
+  const int32x4_t high = vmlal_n_s16(vmull_n_s16(vget_high_s16(x), a), vget_high_s16(y), b);
+  return vcombine_s16(vrshrn_n_s32(low, 16), vrshrn_n_s32(high, 16));
+}
+
+// 91881 = 65536 + 26345, 116130 = 131072 - 14942 and -46802 = -65536 + 18734.
+inline void composite_eight(const uint8_t* low, const int16_t* difference, const int16_t* chroma_u,
+                            const int16_t* chroma_v, uint8_t* rgb) {
+  const uint8x8x3_t from = vld3_u8(low);
+  const int16x8_t d = vld1q_s16(difference), u = vld1q_s16(chroma_u), v = vld1q_s16(chroma_v);
+  const int16x8_t red = vaddq_s16(vaddq_s16(d, v), rounded_sum(v, 26345, u, 0));
+  const int16x8_t green = vaddq_s16(vsubq_s16(d, v), rounded_sum(u, -22554, v, 18734));
+  const int16x8_t blue = vaddq_s16(vaddq_s16(d, vaddq_s16(u, u)), rounded_sum(u, -14942, v, 0));
+  const auto shown = [](uint8x8_t base, int16x8_t added) {
+    return vqmovun_s16(vaddq_s16(vreinterpretq_s16_u16(vmovl_u8(base)), added));
+  };
+  const uint8x8x3_t to = {{shown(from.val[0], red), shown(from.val[1], green), shown(from.val[2], blue)}};
+  vst3_u8(rgb, to);
+}
+
+void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+                          uint8_t* rgb) {
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8) composite_eight(low + 3 * i, d + i, u + i, v + i, rgb + 3 * i);
+  if (i == n) return;
+  uint8_t last_low[24] = {}, last_rgb[24];
+  int16_t last[3][8] = {};
+  __builtin_memcpy(last_low, low + 3 * i, 3 * (n - i));
+  __builtin_memcpy(last[0], d + i, (n - i) * sizeof(int16_t));
+  __builtin_memcpy(last[1], u + i, (n - i) * sizeof(int16_t));
+  __builtin_memcpy(last[2], v + i, (n - i) * sizeof(int16_t));
+  composite_eight(last_low, last[0], last[1], last[2], last_rgb);
+  __builtin_memcpy(rgb + 3 * i, last_rgb, 3 * (n - i));
+}
+
+}  // namespace
+
+void fill_warp_neon(WarpKernels& table) {
+  table.reproject_row = reproject_row;
+  table.filter_points = filter_points;
+  table.filter_edge_points = filter_edge_points;
+  table.add_carried_row = add_carried_row;
+  table.composite_signed_row = composite_signed_row;
+}
+
+}  // namespace pac
