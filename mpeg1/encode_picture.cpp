@@ -33,7 +33,9 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
   if (options.effort == Effort::best && columns >= kLargeColumns) task.f_code = 5;
   if (type == PictureType::P && options.effort != Effort::fast) {
     const bool is_replaced = picture.reference != nullptr;
-    task.coarse_vectors = coarse.search(is_replaced ? &task.reference : nullptr, task.f_code, kernels.motion, pool);
+    if (!is_replaced) task.ahead_vectors = lookahead.vectors(frame_in_group);
+    if (task.ahead_vectors == nullptr)
+      task.coarse_vectors = coarse.search(is_replaced ? &task.reference : nullptr, task.f_code, kernels.motion, pool);
     task.coarse_columns = coarse.block_columns();
   }
   task.quantizers = quantizers.data();

@@ -31,23 +31,22 @@ struct Lookahead::Step {
   int coarse_columns = 0;
   double quantizer_scale = 1;
   const uint8_t* bits_of_difference = nullptr;
-  const Predictions* last = nullptr;  // of the step before, or null
+  const Vectors* last = nullptr;  // of the step before, or null
   const MotionKernels* kernels = nullptr;
 };
 
-MotionVector Lookahead::search(const Step& step, const Band& band, int column, int row,
-                               const Predictions& predictions) const {
+MotionVector Lookahead::search(const Step& step, const Band& band, int column, int row, const Vectors& vectors) const {
   if (step.kernels->sad16(step.source.at(0, column, row), step.source.stride[0], step.before.at(0, column, row),
                           step.before.stride[0]) < kStillSad)
     return {};
-  const auto at = [&](const Predictions& of, int dx, int dy) {
-    return of[static_cast<size_t>((row + dy) * columns_ + column + dx)].vector;
+  const auto at = [&](const Vectors& of, int dx, int dy) {
+    return of[static_cast<size_t>((row + dy) * columns_ + column + dx)];
   };
   MotionVector candidates[6];
   int n = 0;
-  if (column > 0) candidates[n++] = at(predictions, -1, 0);
-  if (row > band.first_row) candidates[n++] = at(predictions, 0, -1);
-  if (row > band.first_row && column + 1 < columns_) candidates[n++] = at(predictions, 1, -1);
+  if (column > 0) candidates[n++] = at(vectors, -1, 0);
+  if (row > band.first_row) candidates[n++] = at(vectors, 0, -1);
+  if (row > band.first_row && column + 1 < columns_) candidates[n++] = at(vectors, 1, -1);
   if (step.last != nullptr) {
     candidates[n++] = at(*step.last, 0, 0);
     if (column + 1 < columns_) candidates[n++] = at(*step.last, 1, 0);
@@ -88,22 +87,23 @@ float Lookahead::share(const Step& step, int column, int row, MotionVector vecto
   return static_cast<float>(std::max(0.0, of_motion) * of_quantizer);
 }
 
-void Lookahead::predict_band(const Step& step, const Band& band, Predictions& predictions) const {
+void Lookahead::predict_band(const Step& step, const Band& band, Vectors& vectors, Shares& shares) const {
   for (int row = band.first_row; row < band.end_row; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const MotionVector vector = search(step, band, column, row, predictions);
-      predictions[static_cast<size_t>(row * columns_ + column)] = {vector, share(step, column, row, vector)};
+      const auto i = static_cast<size_t>(row * columns_ + column);
+      vectors[i] = search(step, band, column, row, vectors);
+      shares[i] = share(step, column, row, vectors[i]);
     }
 }
 
 // What the macroblocks are worth goes to those they are predicted from, by the area that each of them lends.
-void Lookahead::pass_on(const Predictions& predictions, const std::vector<float>& worth,
+void Lookahead::pass_on(const Vectors& vectors, const Shares& shares, const std::vector<float>& worth,
                         std::vector<float>& before) const {
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
       const auto i = static_cast<size_t>(row * columns_ + column);
-      const int x = 32 * column + predictions[i].vector.x_halfpel, y = 32 * row + predictions[i].vector.y_halfpel;
-      const float passed = predictions[i].share * worth[i] / 1024;
+      const int x = 32 * column + vectors[i].x_halfpel, y = 32 * row + vectors[i].y_halfpel;
+      const float passed = shares[i] * worth[i] / 1024;
       const int right = x & 31, below = y & 31;
       for (int corner = 0; corner < 4; ++corner) {
         const int area = ((corner & 1) != 0 ? right : 32 - right) * ((corner & 2) != 0 ? below : 32 - below);
@@ -117,7 +117,8 @@ void Lookahead::pass_on(const Predictions& predictions, const std::vector<float>
 void Lookahead::look(const Frame420& first, std::span<const Frame420* const> following, double quantizer_scale,
                      std::span<const Band> bands, const MotionKernels& kernels, ThreadPool& pool) {
   const auto count = static_cast<size_t>(columns_) * static_cast<size_t>(rows_);
-  std::vector<Predictions> predictions(following.size(), Predictions(count));
+  vectors_.assign(following.size(), Vectors(count));
+  std::vector<Shares> shares(following.size(), Shares(count));
   std::vector<uint8_t> bits_of_difference(kMaxDifference + 1);
   for (int i = 0; i <= kMaxDifference; ++i)
     bits_of_difference[static_cast<size_t>(i)] = static_cast<uint8_t>(motion_bits(std::min(i, 60), 0, 1));
@@ -136,13 +137,13 @@ void Lookahead::look(const Frame420& first, std::span<const Frame420* const> fol
     coarse.start_picture(step.source);
     step.coarse_vectors = coarse.search(nullptr, kFCode, kernels, pool);
     step.coarse_columns = coarse.block_columns();
-    step.last = i > 0 ? &predictions[i - 1] : nullptr;
+    step.last = i > 0 ? &vectors_[i - 1] : nullptr;
     pool.for_each(static_cast<int64_t>(bands.size()),
-                  [&](int64_t band) { predict_band(step, bands[static_cast<size_t>(band)], predictions[i]); });
+                  [&](int64_t band) { predict_band(step, bands[static_cast<size_t>(band)], vectors_[i], shares[i]); });
     coarse.finish_picture();
   }
   scales_.assign(following.size() + 1, std::vector<float>(count, 1.0F));
-  for (size_t i = following.size(); i-- > 0;) pass_on(predictions[i], scales_[i + 1], scales_[i]);
+  for (size_t i = following.size(); i-- > 0;) pass_on(vectors_[i], shares[i], scales_[i + 1], scales_[i]);
   for (std::vector<float>& of_picture : scales_)
     for (float& worth : of_picture) worth = static_cast<float>(exact_pow(static_cast<double>(worth), kExponent));
 }

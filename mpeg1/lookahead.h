@@ -23,7 +23,10 @@ class Lookahead {
   // P pictures. The result depends on `bands`, not on the pool's threads.
   void look(const Frame420& first, std::span<const Frame420* const> following, double quantizer_scale,
             std::span<const Band> bands, const MotionKernels& kernels, ThreadPool& pool);
-  void forget() { scales_.clear(); }
+  void forget() {
+    scales_.clear();
+    vectors_.clear();
+  }
 
   // Of the group's picture, from 0 on: what quantizer_scale is multiplied by in each macroblock, raster order, at most
   // 1. Null for pictures that were not looked at.
@@ -32,22 +35,27 @@ class Lookahead {
     return i < scales_.size() ? scales_[i].data() : nullptr;
   }
 
- private:
-  // How a macroblock is predicted from the frame before.
-  struct Prediction {
-    MotionVector vector;
-    float share = 0;  // of the errors there that it takes over, 0..1
-  };
-  using Predictions = std::vector<Prediction>;
-  struct Step;  // from one frame to the next
+  // Vectors of its macroblocks to the frame before. Null for the group's first picture, too.
+  const MotionVector* vectors(int picture) const {
+    const auto i = static_cast<size_t>(picture) - 1;
+    return picture > 0 && i < vectors_.size() ? vectors_[i].data() : nullptr;
+  }
 
-  void predict_band(const Step& step, const Band& band, Predictions& predictions) const;
-  MotionVector search(const Step& step, const Band& band, int column, int row, const Predictions& predictions) const;
+ private:
+  // How the macroblocks are predicted from the frame before.
+  using Vectors = std::vector<MotionVector>;
+  using Shares = std::vector<float>;  // of the errors there that they take over, 0..1
+  struct Step;                        // from one frame to the next
+
+  void predict_band(const Step& step, const Band& band, Vectors& vectors, Shares& shares) const;
+  MotionVector search(const Step& step, const Band& band, int column, int row, const Vectors& vectors) const;
   float share(const Step& step, int column, int row, MotionVector vector) const;
-  void pass_on(const Predictions& predictions, const std::vector<float>& worth, std::vector<float>& before) const;
+  void pass_on(const Vectors& vectors, const Shares& shares, const std::vector<float>& worth,
+               std::vector<float>& before) const;
 
   int columns_, rows_;
   std::vector<std::vector<float>> scales_;
+  std::vector<Vectors> vectors_;  // from the second frame on
 };
 
 }  // namespace pac::mpeg1

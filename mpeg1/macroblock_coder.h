@@ -28,7 +28,8 @@ struct PictureTask {
   const MotionVector* last_vectors = nullptr;    // of the picture before, or null
   const MotionVector* coarse_vectors = nullptr;  // of each 2 x 2 macroblocks, coarse_columns a row, or null
   int coarse_columns = 0;
-  const MotionVector* candidates = nullptr;  // of the caller
+  const MotionVector* ahead_vectors = nullptr;  // of each macroblock, by the lookahead, instead; or null
+  const MotionVector* candidates = nullptr;     // of the caller
   int candidates_per_macroblock = 0;
   const uint8_t* must_be_intra = nullptr;    // intra refresh: a byte a macroblock, or null
   const uint8_t* shows_reference = nullptr;  // a byte a macroblock: the target holds the reference's samples; or null

@@ -76,6 +76,7 @@ class MacroblockPlace {
     input.predicted = predicted_vector();
     input.candidates = candidates;
     input.n_candidates = n_candidates;
+    if (task_.ahead_vectors != nullptr) input.far_vector = task_.ahead_vectors + address();
     if (task_.coarse_vectors != nullptr)
       input.far_vector = task_.coarse_vectors + (row_ / 2 * task_.coarse_columns + column_ / 2);
     input.lambda_q4 = kVectorLambdaQ4 * static_cast<uint32_t>(quantizer());
