@@ -83,7 +83,7 @@ class SharedState {
 
   // What the codec made of it.
   void keep(const mpeg1::FrameView& coded, bool uses_predictor) {
-    if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr, base_);
+    if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr);
     if (!is_full_) coded_ = mpeg1::copy_of(coded);
   }
 

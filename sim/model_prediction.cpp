@@ -64,6 +64,8 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
   kept_[0] = BorderedPlane(width, height);
   kept_[1] = BorderedPlane(half_width, half_height);
   kept_[2] = BorderedPlane(half_width, half_height);
+  for (int component = 0; component < 3; ++component)
+    carried_[component] = Image<int16_t, 1>(kept_[component].width(), kept_[component].height());
 }
 
 void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id) {
@@ -85,8 +87,9 @@ void ModelPredictor::carry(bool chroma, const Flow& flow, const Frame420& base) 
     found += carrier.found();
     for (int component = chroma ? 1 : 0; component <= (chroma ? 2 : 0); ++component) {
       GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
-      kernels.warp.add_carried_row(plane(base, component).row(y), carrier.fetch(kept_[component]),
-                                   static_cast<size_t>(width), target.row(y));
+      int16_t* carried = carried_[component].row(y);
+      std::memcpy(carried, carrier.fetch(kept_[component]), static_cast<size_t>(width) * sizeof(int16_t));
+      kernels.warp.add_carried_row(plane(base, component).row(y), carried, static_cast<size_t>(width), target.row(y));
     }
   }
   if (!chroma) stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width) * height);
@@ -106,21 +109,32 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
     for (int component = 0; component < 3; ++component) {
       const PlaneView<const uint8_t> from = plane(base, component);
       GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
-      for (int y = 0; y < from.height; ++y) std::memcpy(target.row(y), from.row(y), static_cast<size_t>(from.width));
+      for (int y = 0; y < from.height; ++y) {
+        std::memcpy(target.row(y), from.row(y), static_cast<size_t>(from.width));
+        std::fill_n(carried_[component].row(y), from.width, int16_t{0});
+      }
     }
   }
   flow_.remember(camera, objects);
   return reference_;
 }
 
-void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr,
-                          const Frame420& base) {
+void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr) {
+  constexpr int16_t kLargest = 255 << kCarriedBits;
   const PlaneView<const uint8_t> coded[3] = {y, cb, cr};
   for (int component = 0; component < 3; ++component) {
     BorderedPlane& kept = kept_[component];
+    const int width = kept.width();
     for (int row = 0; row < kept.height(); ++row) {
-      const uint8_t *from = coded[component].row(row), *minus = plane(base, component).row(row);
-      for (int x = 0; x < kept.width(); ++x) kept.row(row)[x] = static_cast<int16_t>(from[x] - minus[x]);
+      const uint8_t *from = coded[component].row(row), *minus = plane(reference_, component).row(row);
+      const int16_t* carried = carried_[component].row(row);
+      int16_t* to = kept.row(row);
+      for (int x = 0; x < width; ++x) {
+        // In 16 bits: beyond +-2^14 no picture brings it back within +-kLargest.
+        const auto bounded = std::clamp<int16_t>(carried[x], -0x4000, 0x4000);
+        const auto sum = static_cast<int16_t>(bounded + (from[x] - minus[x]) * (1 << kCarriedBits));
+        to[x] = std::clamp<int16_t>(sum, -kLargest, kLargest);
+      }
     }
     kept.extend();
   }

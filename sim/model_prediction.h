@@ -2,10 +2,11 @@
 // surfaces are now. Server and client run the same code on the same numbers.
 //
 //   depth, cameras, objects -> flow -> visibility (surface and depth) -> filter -> carried difference -> + base ->
-//   reference coded picture - base -> difference, kept for the next frame
+//   reference; carried difference + coded picture - reference -> difference, kept for the next frame
 // The base is the client's own rendering L (so that the reference predicts H itself), or gray (the paper's D form). All
-// in 4:2:0; chroma is carried at its own resolution. Where the frame before does not show the surface, the carried
-// difference is 0: the reference is the base.
+// in 4:2:0; chroma is carried at its own resolution. Differences have five bits below the point, so that what nothing
+// is coded for is not rounded again and again: kept = carried + (coded picture - reference). Where the frame before
+// does not show the surface, the carried difference is 0: the reference is the base.
 #pragma once
 
 #include <cstdint>
@@ -43,12 +44,12 @@ class ModelPredictor {
                             const raster::Camera& camera, std::span<const glm::mat4> objects = {});
 
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
-  void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr, const Frame420& base);
+  void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr);
 
   // Per pixel the surface that L shows in the frame whose reference was asked for last; until keep().
   PlaneView<const uint32_t> surface() const { return surface_.view(); }
 
-  // The kept difference: luma and chroma.
+  // The kept difference: luma and chroma, in 1/32.
   const BorderedPlane& difference(int component) const { return kept_[component]; }
 
   // The next reference is the base: after a loss, or for a frame that must stand alone.
@@ -68,6 +69,7 @@ class ModelPredictor {
   SurfaceMap now_[2], before_[2];  // luma, chroma
   IdImage surface_;
   BorderedPlane kept_[3];
+  Image<int16_t, 1> carried_[3];  // to the frame whose reference was asked for last
   Frame420 reference_;
   PredictionStats stats_;
 };

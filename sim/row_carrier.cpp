@@ -22,6 +22,10 @@ RowCarrier::RowCarrier(const SurfaceMap& now, const SurfaceMap& before, const Fl
   state_.resize(width + 8);  // to be read in words
   wanted_.resize(width);
   picked_.resize(width);
+  absent_.resize(width);
+  edges_.resize(width);
+  edge_points_.resize(width);
+  edge_samples_.resize(width);
 }
 
 // A chroma sample lies between four luma samples; half the position of the first of them is its own.
@@ -45,11 +49,9 @@ void RowCarrier::find(int y, ptrdiff_t plane_stride) {
   const WarpPlaces places{offset_.data(), phase_x_.data(), phase_y_.data(), state_.data(), wanted_.data()};
   const size_t n_special =
       kernels_.place_points(before_.view(), plane_stride, x_64, y_64, u_before, now_.row(y), n, places);
-  absent_.clear();
-  edges_.clear();
-  edge_points_.clear();
+  n_absent_ = n_edges_ = 0;
   if (n_special > 0) find_special(x_64, y_64, plane_stride);
-  n_found_ = n - absent_.size();
+  n_found_ = n - n_absent_;
 }
 
 // What is not plain. States are looked at eight at a time.
@@ -62,7 +64,7 @@ void RowCarrier::find_special(const int32_t* x_64, const int32_t* y_64, ptrdiff_
     if (states == kAllPlain) continue;
     for (size_t i = first; i < std::min(first + 8, n); ++i) {
       if (state_[i] == kWarpPlain) continue;
-      if (state_[i] == kWarpAbsent || !find_edge(i, x_64[i], y_64[i], plane_stride)) absent_.push_back(i);
+      if (state_[i] == kWarpAbsent || !find_edge(i, x_64[i], y_64[i], plane_stride)) absent_[n_absent_++] = i;
     }
   }
 }
@@ -72,20 +74,22 @@ bool RowCarrier::find_edge(size_t column, int32_t x_64, int32_t y_64, ptrdiff_t 
   const int32_t right = x_64 & (kWarpPhases - 1), below = y_64 & (kWarpPhases - 1);
   const uint32_t *keys = before_.row(y) + x, *keys_below = before_.row(y + 1) + x;
   const uint32_t wanted = wanted_[column];
-  Edge edge;
   const auto weight = [wanted](uint32_t key, int32_t w) { return same_surface(key, wanted) ? w : 0; };
+  Edge& edge = edges_[n_edges_];
   edge.weight[0] = weight(keys[0], (kWarpPhases - right) * (kWarpPhases - below));
   edge.weight[1] = weight(keys[1], right * (kWarpPhases - below));
   edge.weight[2] = weight(keys_below[0], (kWarpPhases - right) * below);
   edge.weight[3] = weight(keys_below[1], right * below);
   edge.sum = (edge.weight[0] + edge.weight[1]) + (edge.weight[2] + edge.weight[3]);
+  if (edge.sum == 0) return false;
   edge.column = column;
   edge.offset = y * plane_stride + x;
-  if (edge.sum == 0) return false;
-  edges_.push_back(edge);
-  edge_points_.push_back({static_cast<int32_t>((y - kWarpTapsBefore) * plane_stride + x - kWarpTapsBefore),
-                          static_cast<int32_t>((y - kWarpTapsBefore) * before_.view().stride + x - kWarpTapsBefore),
-                          wanted, 0, static_cast<uint8_t>(right), static_cast<uint8_t>(below)});
+  edge_points_[n_edges_++] = {static_cast<int32_t>(edge.offset - kWarpTapsBefore * (plane_stride + 1)),
+                              static_cast<int32_t>((y - kWarpTapsBefore) * before_.view().stride + x - kWarpTapsBefore),
+                              wanted,
+                              0,
+                              static_cast<uint8_t>(right),
+                              static_cast<uint8_t>(below)};
   return true;
 }
 
@@ -93,6 +97,11 @@ int16_t RowCarrier::mean(const int16_t* samples, ptrdiff_t stride, const Edge& e
   const int16_t *at = samples + edge.offset, *below = at + stride;
   const int32_t sum =
       (edge.weight[0] * at[0] + edge.weight[1] * at[1]) + (edge.weight[2] * below[0] + edge.weight[3] * below[1]);
+  if (edge.sum == kWarpPhases * kWarpPhases) {  // most often: a shift that rounds as the division does
+    const int32_t sign = sum >> 31;
+    return static_cast<int16_t>(
+        ((((sum ^ sign) - sign) + kWarpPhases * kWarpPhases / 2) / (kWarpPhases * kWarpPhases) ^ sign) - sign);
+  }
   const int32_t half = edge.sum / 2;
   return static_cast<int16_t>(sum >= 0 ? (sum + half) / edge.sum : -((half - sum) / edge.sum));
 }
@@ -100,9 +109,8 @@ int16_t RowCarrier::mean(const int16_t* samples, ptrdiff_t stride, const Edge& e
 const int16_t* RowCarrier::fetch(const BorderedPlane& plane) {
   kernels_.filter_points(plane.row(0), plane.stride(), kWarpFilter.data(), offset_.data(), phase_x_.data(),
                          phase_y_.data(), offset_.size(), picked_.data());
-  for (const size_t column : absent_) picked_[column] = 0;
-  const size_t n = edges_.size();
-  edge_samples_.resize(n);
+  for (size_t i = 0; i < n_absent_; ++i) picked_[absent_[i]] = 0;
+  const size_t n = n_edges_;
   for (size_t i = 0; i < n; ++i) edge_points_[i].stand_in = mean(plane.row(0), plane.stride(), edges_[i]);
   kernels_.filter_edge_points(plane.row(0), plane.stride(), before_.row(0), before_.view().stride, kWarpFilter.data(),
                               edge_points_.data(), n, edge_samples_.data());

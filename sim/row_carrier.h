@@ -53,7 +53,7 @@ class RowCarrier {
   std::vector<WarpEdge> edge_points_;
   std::vector<int16_t> edge_samples_;
   std::vector<int16_t> picked_;
-  size_t n_found_ = 0;
+  size_t n_absent_ = 0, n_edges_ = 0, n_found_ = 0;
 };
 
 }  // namespace pac::sim

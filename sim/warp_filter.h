@@ -49,10 +49,10 @@ constexpr WarpFilter make() {
     int total = 0;
     int16_t* taps = &filter[static_cast<size_t>(phase) * kWarpTapStride];
     for (int tap = 0; tap < kWarpTaps; ++tap) {
-      taps[tap] = static_cast<int16_t>(rounded(weight[tap] / sum * 128));
+      taps[tap] = static_cast<int16_t>(rounded(weight[tap] / sum * 512));
       total += taps[tap];
     }
-    taps[phase < kWarpPhases / 2 ? 2 : 3] = static_cast<int16_t>(taps[phase < kWarpPhases / 2 ? 2 : 3] + 128 - total);
+    taps[phase < kWarpPhases / 2 ? 2 : 3] = static_cast<int16_t>(taps[phase < kWarpPhases / 2 ? 2 : 3] + 512 - total);
   }
   return filter;
 }

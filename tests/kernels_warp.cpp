@@ -62,8 +62,8 @@ TEST_CASE("the filter is equal on every instruction set, at the extremes of its 
     for (int round = 0; round < 200; ++round) {
       std::vector<int16_t> plane(kStride * 16);
       for (int16_t& sample : plane) {
-        const int value = static_cast<int>(next_random(state) % 511) - 255;
-        sample = static_cast<int16_t>(round % 3 == 0 ? (value < 0 ? -255 : 255) : value);
+        const int value = static_cast<int>(next_random(state) % 16384) - 8192;
+        sample = static_cast<int16_t>(round % 3 == 0 ? (value < 0 ? -8192 : 8191) : value);
       }
       const auto n = static_cast<size_t>(round % 23);
       std::vector<int32_t> offset(n);
@@ -173,7 +173,7 @@ TEST_CASE("points near edges are equal on every instruction set, at depths withi
     if (kernels_for(isa) == nullptr) continue;
     for (int round = 0; round < 200; ++round) {
       std::vector<int16_t> plane(kStride * kRows);
-      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 16384) - 8192);
       std::vector<uint32_t> keys(kMapStride * kRows);
       for (uint32_t& key : keys) key = some_key(state, true);
       std::vector<WarpEdge> edges(static_cast<size_t>(round % 9));
@@ -206,7 +206,7 @@ TEST_CASE("points of one height are filtered as points of many are, on every ins
     if (kernels_for(isa) == nullptr) continue;
     for (int round = 0; round < 100; ++round) {
       std::vector<int16_t> plane(kStride * 8);
-      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 16384) - 8192);
       constexpr size_t kPoints = 29;
       std::vector<int32_t> offset(kPoints);
       std::vector<uint8_t> phase_x(kPoints), phase_y(kPoints, static_cast<uint8_t>(round % kWarpPhases));
@@ -232,10 +232,11 @@ TEST_CASE("what is shown is equal on every instruction set, for every difference
     if (kernels_for(isa) == nullptr) continue;
     for (size_t n = 0; n < 600; ++n) {
       std::vector<uint8_t> low(3 * n);
-      std::vector<int16_t> d(n), u(n), v(n);
+      std::vector<int16_t> d(n), u(n), v(n), carried(n);
       for (uint8_t& sample : low) sample = static_cast<uint8_t>(next_random(state));
       for (size_t i = 0; i < n; ++i) {
         d[i] = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
+        carried[i] = static_cast<int16_t>(128 * d[i] - static_cast<int>(i % 64));
         u[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? i % 511 : next_random(state) % 511) - 255);
         v[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? 510 - i : next_random(state) % 511) - 255);
       }
@@ -244,7 +245,7 @@ TEST_CASE("what is shown is equal on every instruction set, for every difference
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
       for (int side = 0; side < 2; ++side) {
         tables[side]->composite_signed_row(low.data(), d.data(), u.data(), v.data(), n, rgb[side].data());
-        tables[side]->add_carried_row(low.data(), d.data(), n, sum[side].data());
+        tables[side]->add_carried_row(low.data(), carried.data(), n, sum[side].data());
       }
       REQUIRE(rgb[0] == rgb[1]);
       REQUIRE(sum[0] == sum[1]);

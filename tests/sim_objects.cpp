@@ -303,7 +303,7 @@ double worst_prediction(bool knows_objects, Isa isa, std::vector<uint64_t>* hash
         for (int x = 0; x < kSide; ++x) hash = hash * 0x9E3779B97F4A7C15u + reference.y.row(y)[x];
       hashes->push_back(hash);
     }
-    model.keep(high.y.view(), high.cb.view(), high.cr.view(), low);
+    model.keep(high.y.view(), high.cb.view(), high.cr.view());
   }
   return worst;
 }

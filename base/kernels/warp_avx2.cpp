@@ -189,7 +189,7 @@ size_t place_points(const KeyMap& map, ptrdiff_t plane_stride, const int32_t* x_
 // Six rows down the columns, 16 bits of result: v of the contract. rows(k): row k; ty: the coefficients, in each half.
 template <class Rows>
 inline __m256i filter_down(const Rows& rows, __m256i ty) {
-  __m256i low = _mm256_set1_epi32(1), high = low;
+  __m256i low = _mm256_set1_epi32(128), high = low;
   const auto add_pair = [&](int k, __m256i pair) {
     const __m256i a = rows(k), b = rows(k + 1);
     low = _mm256_add_epi32(low, _mm256_madd_epi16(_mm256_unpacklo_epi16(a, b), pair));
@@ -198,7 +198,7 @@ inline __m256i filter_down(const Rows& rows, __m256i ty) {
   add_pair(0, _mm256_shuffle_epi32(ty, 0x00));
   add_pair(2, _mm256_shuffle_epi32(ty, 0x55));
   add_pair(4, _mm256_shuffle_epi32(ty, 0xAA));
-  return _mm256_packs_epi32(_mm256_srai_epi32(low, 1), _mm256_srai_epi32(high, 1));
+  return _mm256_packs_epi32(_mm256_srai_epi32(low, 8), _mm256_srai_epi32(high, 8));
 }
 
 struct Taps {
@@ -209,7 +209,7 @@ struct Taps {
 // Partial sums of points 2 i and 2 i + 1 in the halves of sums[i], finished and in order.
 inline __m128i finish_eight(const __m256i sums[4]) {
   const __m256i all = _mm256_hadd_epi32(_mm256_hadd_epi32(sums[0], sums[1]), _mm256_hadd_epi32(sums[2], sums[3]));
-  const __m256i done = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(4096)), 13);
+  const __m256i done = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(512)), 10);
   const __m128i even = _mm256_castsi256_si128(done), odd = _mm256_extracti128_si256(done, 1);
   return _mm_blend_epi16(even, _mm_slli_epi32(odd, 16), 0xAA);
 }
@@ -297,16 +297,21 @@ void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* 
     const __m256i v = filter_down(rows, load_two(taps[a.phase_y], taps[b.phase_y]));
     const __m256i sums = _mm256_madd_epi16(v, load_two(taps[a.phase_x], taps[b.phase_x]));
     const __m256i pairs = _mm256_hadd_epi32(sums, sums), all = _mm256_hadd_epi32(pairs, pairs);
-    const __m256i done = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(4096)), 13);
+    const __m256i done = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(512)), 10);
     out[i] = static_cast<int16_t>(_mm256_extract_epi32(done, 0));
     if (i + 1 < n) out[i + 1] = static_cast<int16_t>(_mm256_extract_epi32(done, 4));
   }
 }
 
+// Of samples with bits below the point, rounded.
+inline __m256i whole(__m256i carried) {
+  return _mm256_srai_epi16(_mm256_add_epi16(carried, _mm256_set1_epi16(1 << (kCarriedBits - 1))), kCarriedBits);
+}
+
 void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
   const auto sixteen = [](const uint8_t* from, const int16_t* added) {
     const __m256i wide = _mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
-    const __m256i sum = _mm256_add_epi16(wide, load_16(added));
+    const __m256i sum = _mm256_add_epi16(wide, whole(load_16(added)));
     return _mm_packus_epi16(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
   };
   size_t i = 0;

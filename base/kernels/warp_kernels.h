@@ -18,6 +18,7 @@ constexpr int kWarpTapsBefore = 2;
 constexpr int kWarpPhases = 64;    // a pixel
 constexpr int kWarpTapStride = 8;  // coefficients of one phase in the table; the last two are 0
 constexpr int32_t kWarpNowhere = INT32_MIN;
+constexpr int kCarriedBits = 5;  // of carried differences below the point
 
 // What a pixel shows, in 32 bits: bits 16..31 the surface (modulo 2^16), bits 0..13 its depth (surface_keys_row), and
 // in maps of the frame before bit 14: the taps of the filter around a place between this pixel and the next ones all
@@ -73,11 +74,11 @@ struct WarpKernels {
   size_t (*place_points)(const KeyMap& before, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
                          const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out);
 
-  // n points of a plane of 16-bit samples in -255..255. Point i starts at plane + offset[i] (its tap -2, -2; rows are
+  // n points of a plane of 16-bit samples in -8192..8191. Point i starts at plane + offset[i] (its tap -2, -2; rows are
   // `stride` apart), at the phases phase_x[i] and phase_y[i], rows of `taps` [kWarpPhases][kWarpTapStride] whose sum
-  // is 128 and whose absolute sum is at most 255:
-  //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 1) >> 1        fits 16 bits
-  //   out[i] = (sum over j of taps[phase_x][j] * v[j] + 4096) >> 13
+  // is 512 and whose absolute sum is at most 1020:
+  //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 128) >> 8     fits 16 bits
+  //   out[i] = (sum over j of taps[phase_x][j] * v[j] + 512) >> 10            and so does this
   // Reads up to 16 samples of each of the 6 rows.
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
                         const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out);
@@ -87,7 +88,7 @@ struct WarpKernels {
   void (*filter_edge_points)(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
                              const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out);
 
-  // out[i] = min(max(base[i] + carried[i], 0), 255), carried in -32000..32000. Any n and alignment.
+  // out[i] = min(max(base[i] + ((carried[i] + 16) >> 5), 0), 255), carried in -32700..32700. Any n and alignment.
   void (*add_carried_row)(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out);
 
   // n pixels of a picture and of a difference, luma d and chroma u and v in -255..255, to what is shown, interleaved:

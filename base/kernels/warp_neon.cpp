@@ -61,7 +61,7 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
 // rows(k): eight samples of row k of the patch.
 template <class Rows>
 inline int16_t filter_point(const Rows& rows, const int16_t* taps_x, const int16_t* taps_y) {
-  int32x4_t low = vdupq_n_s32(1), high = low;
+  int32x4_t low = vdupq_n_s32(128), high = low;
   for (int k = 0; k < kWarpTaps; ++k) {
     const int16x8_t row = rows(k);
     low = vmlal_n_s16(low, vget_low_s16(row), taps_y[k]);
@@ -69,9 +69,9 @@ inline int16_t filter_point(const Rows& rows, const int16_t* taps_x, const int16
   }
   // Columns 6 and 7 may not fit 16 bits where they hold anything, but their coefficients are 0.
   const int16x8_t x = vld1q_s16(taps_x);
-  const int32x4_t sums = vmlal_s16(vmull_s16(vmovn_s32(vshrq_n_s32(low, 1)), vget_low_s16(x)),
-                                   vmovn_s32(vshrq_n_s32(high, 1)), vget_high_s16(x));
-  return static_cast<int16_t>((vaddvq_s32(sums) + 4096) >> 13);
+  const int32x4_t sums = vmlal_s16(vmull_s16(vmovn_s32(vshrq_n_s32(low, 8)), vget_low_s16(x)),
+                                   vmovn_s32(vshrq_n_s32(high, 8)), vget_high_s16(x));
+  return static_cast<int16_t>((vaddvq_s32(sums) + 512) >> 10);
 }
 
 void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
@@ -108,7 +108,7 @@ void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* 
 
 inline void add_eight(const uint8_t* base, const int16_t* carried, uint8_t* out) {
   const int16x8_t wide = vreinterpretq_s16_u16(vmovl_u8(vld1_u8(base)));
-  vst1_u8(out, vqmovun_s16(vaddq_s16(wide, vld1q_s16(carried))));
+  vst1_u8(out, vqmovun_s16(vaddq_s16(wide, vrshrq_n_s16(vld1q_s16(carried), kCarriedBits))));
 }
 
 void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {

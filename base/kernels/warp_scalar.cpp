@@ -64,13 +64,13 @@ size_t place_points(const KeyMap& before, ptrdiff_t plane_stride, const int32_t*
 }
 
 int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x, const int16_t* taps_y) {
-  int32_t sum = 4096;
+  int32_t sum = 512;
   for (int j = 0; j < kWarpTaps; ++j) {
-    int32_t v = 1;
+    int32_t v = 128;
     for (int k = 0; k < kWarpTaps; ++k) v += taps_y[k] * at[k * stride + j];
-    sum += taps_x[j] * (v >> 1);
+    sum += taps_x[j] * (v >> 8);
   }
-  return static_cast<int16_t>(sum >> 13);
+  return static_cast<int16_t>(sum >> 10);
 }
 
 void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
@@ -102,7 +102,7 @@ uint8_t to_byte(int value) {
 }
 
 void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
-  for (size_t i = 0; i < n; ++i) out[i] = to_byte(base[i] + carried[i]);
+  for (size_t i = 0; i < n; ++i) out[i] = to_byte(base[i] + ((carried[i] + (1 << (kCarriedBits - 1))) >> kCarriedBits));
 }
 
 void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,

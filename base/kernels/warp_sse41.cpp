@@ -63,7 +63,7 @@ inline __m128i load(const int16_t* at) {
 // Four partial sums over the columns of one point: lanes are columns 2i and 2i+1.
 inline __m128i filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x, const int16_t* taps_y) {
   const __m128i ty = load(taps_y);
-  __m128i low = _mm_set1_epi32(1), high = low;
+  __m128i low = _mm_set1_epi32(128), high = low;
   const auto add_pair = [&](const int16_t* rows, __m128i pair) {
     const __m128i a = load(rows), b = load(rows + stride);
     low = _mm_add_epi32(low, _mm_madd_epi16(_mm_unpacklo_epi16(a, b), pair));
@@ -72,7 +72,7 @@ inline __m128i filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* 
   add_pair(at, _mm_shuffle_epi32(ty, 0x00));
   add_pair(at + 2 * stride, _mm_shuffle_epi32(ty, 0x55));
   add_pair(at + 4 * stride, _mm_shuffle_epi32(ty, 0xAA));
-  const __m128i v = _mm_packs_epi32(_mm_srai_epi32(low, 1), _mm_srai_epi32(high, 1));
+  const __m128i v = _mm_packs_epi32(_mm_srai_epi32(low, 8), _mm_srai_epi32(high, 8));
   return _mm_madd_epi16(v, load(taps_x));
 }
 
@@ -82,7 +82,7 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
     return filter_point(plane + offset[i], stride, taps + kWarpTapStride * phase_x[i],
                         taps + kWarpTapStride * phase_y[i]);
   };
-  const auto finished = [](__m128i sums) { return _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(4096)), 13); };
+  const auto finished = [](__m128i sums) { return _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(512)), 10); };
   size_t i = 0;
   for (; i + 4 <= n; i += 4) {
     const __m128i sums =
@@ -125,10 +125,15 @@ void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* 
   }
 }
 
+// Of samples with bits below the point, rounded.
+inline __m128i whole(__m128i carried) {
+  return _mm_srai_epi16(_mm_add_epi16(carried, _mm_set1_epi16(1 << (kCarriedBits - 1))), kCarriedBits);
+}
+
 void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
   const auto eight = [](const uint8_t* from, const int16_t* added) {
     const __m128i wide = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
-    const __m128i sum = _mm_add_epi16(wide, load(added));
+    const __m128i sum = _mm_add_epi16(wide, whole(load(added)));
     return _mm_packus_epi16(sum, sum);
   };
   size_t i = 0;
