@@ -368,7 +368,9 @@ std::string plot_svg_file(const Plot& plot) {
       ".grid{stroke:#eeebe3}.faint{opacity:.55}.frame{fill:none;stroke:#5d5a54}"
       ".series path{fill:none;stroke:currentColor;stroke-width:2.2}"
       ".series polygon,.series circle{fill:currentColor;stroke:#fdfcf8}"
-      ".image{color:#b3560b}.polygon{color:#1a5fb0}.hue2{color:#6a4c93}.hue3{color:#2a6f3c}</style>";
+      ".image,.hue1{color:#b3560b}.polygon,.hue0{color:#1a5fb0}.hue2{color:#6a4c93}.hue3{color:#2a6f3c}"
+      ".hue4{color:#a61e4d}.hue5{color:#0b7285}.hue6{color:#5d5a54}"
+      ".hue4 path,.hue5 path,.hue6 path{stroke-dasharray:7 4}</style>";
   svg.insert(svg.find('>') + 1, kStyle);
   return Text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") + svg;
 }

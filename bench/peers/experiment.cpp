@@ -1,0 +1,365 @@
+// The experiment: scenes, splits, every codec of ours and of others, at five rates each; a page with curves.
+//   experiment [--quick] [--shard I/N] [--scenes A,B] [--page] -o DIR
+// Measures every curve that no DIR/rows*.csv has yet, a line a point as it goes: cut it short, start it again, or run
+// N shards at once into one DIR. Then (with --page: only then) writes DIR.md, DIR/gains.csv, DIR/*.svg from all rows.
+// --quick: three scenes, 192 pixels, 6 frames, three rates.
+#include <dirent.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/file_io.h"
+#include "bench/peers/experiment_page.h"
+#include "bench/peers/experiment_table.h"
+#include "bench/peers/peer_codecs.h"
+#include "bench/peers/scene_shots.h"
+#include "jpeg/jpeg.h"
+#include "sim/difference.h"
+#include "sim/match.h"
+
+namespace {
+
+using namespace pac;
+using bench::ExperimentArm;
+using bench::ExperimentRow;
+using bench::need;
+
+constexpr int kFramesPerSecond = 20;
+
+struct Request {
+  bool quick = false, page_only = false;
+  unsigned long shard = 1, shards = 1;
+  std::string out, scenes;
+};
+
+struct SceneAndSplit {
+  std::string scene, split;
+};
+
+// Textured models that Debian's assimp-testmodels has. `fence` in split shading is there to lose: L
+// has one sample a pixel, and bars thinner than it.
+std::vector<SceneAndSplit> plan(const Request& request) {
+  const std::string models = "/usr/share/assimp/models/";
+  std::vector<SceneAndSplit> all = {
+      {"room", "texture"},
+      {"room", "lighting"},
+      {"room+moving", "texture"},
+      {"cubes", "texture"},
+      {"cubes", "lighting"},
+      {"cubes+moving", "texture"},
+      {"pin", "tessellation"},
+      {"letter-texture", "texture"},
+      {models + "OBJ/spider.obj", "texture"},
+      {models + "glTF/CesiumMilkTruck/CesiumMilkTruck.gltf", "texture"},
+      {models + "glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "texture"},
+      {"fence", "texture"},
+      {"fence", "shading"},
+  };
+  if (request.quick) all = {{"cubes", "texture"}, {"room", "lighting"}, {"fence", "shading"}};
+  if (request.scenes.empty()) return all;
+  std::erase_if(all, [&](const SceneAndSplit& one) {
+    const std::string name = one.scene.substr(one.scene.rfind('/') + 1);
+    return (',' + request.scenes + ',').find(',' + name + ',') == std::string::npos;
+  });
+  return all;
+}
+
+// ---- One curve
+
+struct Coded {
+  uint64_t bytes = 0;
+  std::vector<RgbImage> shown;
+  double encode_ms = 0, decode_ms = 0;
+};
+
+// Five, from coarse to fine or the other way round.
+std::vector<double> settings_of(const std::string& arm) {
+  if (arm == "jpeg" || arm == "mjpeg" || arm == "polygons-jpeg" || arm == "polygons-mjpeg") return {5, 12, 25, 45, 70};
+  if (arm == "polygons-avif") return {44, 36, 28, 20, 12};
+  if (arm == "polygons-x264") return {36, 32, 28, 24, 20};
+  for (const bench::StillPeer& peer : bench::still_peers())
+    if (arm == peer.key) return peer.settings;
+  for (const bench::VideoPeer& peer : bench::video_peers())
+    if (arm == peer.key) return {peer.settings.begin(), peer.settings.end()};
+  return {31, 22, 14, 8, 5};
+}
+
+// Pictures drawn once, and what peers need of them written once.
+class Bench {
+ public:
+  explicit Bench(bench::Sequence& sequence) : sequence_(sequence) {}
+
+  std::optional<Coded> code(const ExperimentArm& arm, double setting) {
+    const std::string key = arm.key;
+    if (key == "jpeg" || key == "mjpeg" || key == "polygons-jpeg" || key == "polygons-mjpeg")
+      return code_jpeg(arm.is_video, key.starts_with("polygons"), setting);
+    if (key == "polygons-avif") return composite(still_peer("avif", differences(), setting));
+    if (key == "polygons-x264") return composite(video_peer("x264-low-delay", differences(), setting));
+    if (key == "mpeg1" || key.starts_with("polygons")) return code_mpeg1(arm, setting);
+    return arm.is_video ? video_peer(key, pictures(), setting) : still_peer(key, pictures(), setting);
+  }
+
+ private:
+  bench::PeerRunner& runner(std::unique_ptr<bench::PeerRunner>& runner, RgbImage sim::FrameImages::*member) const {
+    if (!runner) {
+      std::vector<ConstRgbView> views;
+      for (const sim::Shot& shot : sequence_.shots) views.push_back((shot.images.*member).view());
+      runner = std::make_unique<bench::PeerRunner>(std::move(views), kFramesPerSecond);
+    }
+    return *runner;
+  }
+  bench::PeerRunner& pictures() { return runner(pictures_, &sim::FrameImages::high); }
+  bench::PeerRunner& differences() { return runner(differences_, &sim::FrameImages::difference); }
+
+  static std::optional<Coded> coded(std::optional<bench::PeerCode> code) {
+    if (!code) return std::nullopt;
+    return Coded{code->bytes, std::move(code->shown), code->encode_ms, code->decode_ms};
+  }
+  static std::optional<Coded> video_peer(const std::string& key, bench::PeerRunner& runner, double setting) {
+    for (const bench::VideoPeer& peer : bench::video_peers())
+      if (key == peer.key) return coded(runner.video(peer, static_cast<int>(setting)));
+    return std::nullopt;
+  }
+  static std::optional<Coded> still_peer(const std::string& key, bench::PeerRunner& runner, double setting) {
+    for (const bench::StillPeer& peer : bench::still_peers())
+      if (key == peer.key) return coded(runner.still(peer, setting));
+    return std::nullopt;
+  }
+
+  // L plus twice what was shown.
+  std::optional<Coded> composite(std::optional<Coded> code) const {
+    for (size_t i = 0; code && i < code->shown.size(); ++i)
+      sim::composite_image(sequence_.shots[i].images.low.view(), code->shown[i].view(), code->shown[i].view());
+    return code;
+  }
+
+  Coded code_jpeg(bool is_video, bool is_difference, double setting) const {
+    sim::CodingOptions options;
+    options.huffman = jpeg::Huffman::optimal;
+    const sim::Content content = is_difference ? sim::Content::difference : sim::Content::image;
+    Coded out;
+    for (size_t i = 0; i < (is_video ? sequence_.shots.size() : 1); ++i) {
+      const sim::FrameImages& images = sequence_.shots[i].images;
+      const double begin = bench::cpu_ms();
+      const auto file = need(sim::code_at_quality((is_difference ? images.difference : images.high).view(), content,
+                                                  sim::coded_quality(setting, content), options),
+                             "JPEG");
+      const double encoded = bench::cpu_ms();
+      RgbImage shown = need(jpeg::decode(file.bytes), "JPEG");
+      if (is_difference) sim::composite_image(images.low.view(), shown.view(), shown.view());
+      out.encode_ms += encoded - begin;
+      out.decode_ms += bench::cpu_ms() - encoded;
+      out.bytes += file.bytes.size();
+      out.shown.push_back(std::move(shown));
+    }
+    return out;
+  }
+
+  Coded code_mpeg1(const ExperimentArm& arm, double setting) {
+    const std::string key = arm.key;
+    const double begin = bench::cpu_ms();
+    std::vector<sim::VideoFrame> frames;
+    if (key == "mpeg1") {
+      sim::ImageVideoOptions options;
+      options.quantizer_scale = setting;
+      options.effort = mpeg1::Effort::best;
+      frames = need(sim::code_image_video(sequence_.shots, options, true), arm.key);
+    } else {
+      sim::AssistedVideoOptions options;
+      const bool is_block = key == "polygons-block", is_model = key == "polygons-model";
+      options.prediction = is_block   ? sim::Prediction::block
+                           : is_model ? sim::Prediction::model
+                                      : sim::Prediction::none;
+      options.difference = is_block ? sim::Difference::halved : sim::Difference::full;
+      options.quantizer_scale = setting;
+      options.effort = mpeg1::Effort::best;
+      std::vector<sim::Shot> first;  // lent: shots are not copied
+      if (!arm.is_video) first.push_back(std::move(sequence_.shots[0]));
+      const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples};
+      frames = need(sim::code_assisted_video(arm.is_video ? sequence_.shots : first, scene, options, best_isa(), true),
+                    arm.key);
+      if (!arm.is_video) sequence_.shots[0] = std::move(first[0]);
+    }
+    Coded out;
+    out.encode_ms = bench::cpu_ms() - begin;
+    out.bytes = sim::total_bytes(frames);
+    for (sim::VideoFrame& frame : frames) out.shown.push_back(std::move(frame.shown));
+    return out;
+  }
+
+  bench::Sequence& sequence_;
+  std::unique_ptr<bench::PeerRunner> pictures_, differences_;
+};
+
+ExperimentRow row_of(const SceneAndSplit& group, const ExperimentArm& arm, double setting,
+                     const bench::Sequence& sequence, const Coded& coded) {
+  ExperimentRow row;
+  row.scene = group.scene;
+  row.split = group.split;
+  row.arm = arm.key;
+  row.setting = setting;
+  row.width = sequence.width;
+  row.height = sequence.height;
+  row.frames = static_cast<int>(coded.shown.size());
+  row.bytes = coded.bytes;
+  if (row.arm.starts_with("polygons")) {
+    row.resident_model_bytes = sequence.resident_model_bytes;
+    row.draw_low_ms = sequence.draw_low_ms;
+  }
+  row.encode_ms = coded.encode_ms;
+  row.decode_ms = coded.decode_ms;
+  std::vector<sim::ScoredPair> pairs;
+  for (size_t i = 0; i < coded.shown.size(); ++i)
+    pairs.push_back({sequence.shots[i].images.high.view(), coded.shown[i].view()});
+  const auto scores = sim::score_frames(pairs, 1);
+  for (size_t kind = 0; kind < sim::kScoreCount; ++kind) row.scores[kind] = sim::summarize(scores, kind);
+  return row;
+}
+
+// ---- All of them
+
+std::vector<ExperimentRow> rows_in(const std::string& folder) {
+  std::vector<std::string> names;
+  if (DIR* entries = opendir(folder.c_str())) {
+    while (const dirent* entry = readdir(entries)) {
+      const std::string name = entry->d_name;
+      if (name.starts_with("rows") && name.ends_with(".csv")) names.push_back(name);
+    }
+    closedir(entries);
+  }
+  std::sort(names.begin(), names.end());
+  std::vector<ExperimentRow> rows;
+  for (const std::string& name : names) {
+    const Bytes bytes = need(read_file(folder + "/" + name), name.c_str());
+    for (ExperimentRow& row : bench::read_rows({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
+      rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+bool has_row(const std::vector<ExperimentRow>& rows, const SceneAndSplit& group, const char* arm, double setting) {
+  return std::any_of(rows.begin(), rows.end(), [&](const ExperimentRow& row) {
+    return row.scene == group.scene && row.split == group.split && row.arm == arm && row.setting == setting;
+  });
+}
+
+std::vector<double> wanted_settings(const char* arm, bool quick) {
+  std::vector<double> settings = settings_of(arm);
+  if (quick) settings = {settings[0], settings[2], settings[4]};
+  return settings;
+}
+
+// The curves of one scene and split that are this shard's and not there.
+void measure(const Request& request, const SceneAndSplit& group, size_t& curve, std::FILE* file,
+             const std::vector<ExperimentRow>& rows) {
+  std::optional<bench::Sequence> sequence;
+  std::optional<Bench> bench;
+  for (const ExperimentArm& arm : bench::experiment_arms()) {
+    if (curve++ % request.shards != request.shard - 1) continue;
+    const std::vector<double> settings = wanted_settings(arm.key, request.quick);
+    for (const double setting : settings) {
+      if (has_row(rows, group, arm.key, setting)) continue;
+      if (!sequence) {
+        bench::NamedScene scene = bench::load_scene(group.scene);
+        sequence =
+            bench::draw(scene, group.split, request.quick ? 6 : 24, request.quick ? 192 : 0, request.quick ? 4 : 16);
+        bench.emplace(*sequence);
+      }
+      const auto coded = bench->code(arm, setting);
+      if (!coded) {
+        std::printf("%s, %s: %s is not there\n", group.scene.c_str(), group.split.c_str(), arm.label);
+        break;
+      }
+      const ExperimentRow row = row_of(group, arm, setting, *sequence, *coded);
+      std::fputs(bench::row_line(row).c_str(), file);
+      std::fflush(file);
+      std::printf("%s, %s, %s, %g: %llu bytes, %.1f\n", group.scene.c_str(), group.split.c_str(), arm.label, setting,
+                  static_cast<unsigned long long>(row.bytes), row.scores[0].mean);
+      std::fflush(stdout);
+    }
+  }
+}
+
+void write(const std::string& path, const std::string& text) {
+  const auto written = write_file(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  if (written.ok()) return;
+  std::fprintf(stderr, "%s: %s\n", path.c_str(), written.failure().text);
+  std::exit(1);
+}
+
+void write_page(const Request& request) {
+  const std::vector<ExperimentRow> rows = rows_in(request.out);
+  size_t missing = 0;
+  for (const SceneAndSplit& group : plan(request))
+    for (const ExperimentArm& arm : bench::experiment_arms()) {
+      const auto settings = wanted_settings(arm.key, request.quick);
+      missing += std::all_of(settings.begin(), settings.end(),
+                             [&](double setting) { return has_row(rows, group, arm.key, setting); })
+                     ? 0
+                     : 1;
+    }
+  for (const auto& [name, svg] : bench::experiment_plots(rows)) write(request.out + "/" + name + ".svg", svg);
+  write(request.out + "/gains.csv", bench::experiment_gains_csv(rows));
+  const std::string folder = request.out.substr(request.out.rfind('/') + 1);
+  const std::string command =
+      std::string("build/release/bench/peers/experiment ") + (request.quick ? "--quick " : "") + "-o " + request.out;
+  write(request.out + ".md", bench::experiment_page(rows, command, missing, folder));
+  std::printf("%zu rows, %zu curves missing: %s.md\n", rows.size(), missing, request.out.c_str());
+}
+
+bool parse(int argc, char** argv, Request& request) {
+  for (int i = 1; i < argc; ++i) {
+    const bool has_value = i + 1 < argc;
+    if (std::strcmp(argv[i], "--quick") == 0) {
+      request.quick = true;
+    } else if (std::strcmp(argv[i], "--page") == 0) {
+      request.page_only = true;
+    } else if (std::strcmp(argv[i], "--scenes") == 0 && has_value) {
+      request.scenes = argv[++i];
+    } else if (std::strcmp(argv[i], "-o") == 0 && has_value) {
+      request.out = argv[++i];
+    } else if (std::strcmp(argv[i], "--shard") == 0 && has_value) {
+      if (std::sscanf(argv[++i], "%lu/%lu", &request.shard, &request.shards) != 2) return false;
+    } else {
+      return false;
+    }
+  }
+  return !request.out.empty() && request.shard >= 1 && request.shard <= request.shards;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Request request;
+  if (!parse(argc, argv, request)) {
+    std::fprintf(stderr, "usage: experiment [--quick] [--shard I/N] [--scenes A,B] [--page] -o DIR\n");
+    return 2;
+  }
+  mkdir(request.out.c_str(), 0777);
+  if (!request.page_only) {
+    const std::vector<ExperimentRow> rows = rows_in(request.out);
+    const std::string name =
+        request.out + "/rows-" + std::to_string(request.shard) + "-of-" + std::to_string(request.shards) + ".csv";
+    std::FILE* file = std::fopen(name.c_str(), "a+b");
+    if (file == nullptr) {
+      std::fprintf(stderr, "%s: cannot be written\n", name.c_str());
+      return 1;
+    }
+    // After a line that was cut short, too: it becomes a line that read_rows() leaves out.
+    if (std::fseek(file, 0, SEEK_END) == 0)
+      std::fputs(std::ftell(file) == 0 ? bench::row_header().c_str() : "\n", file);
+    size_t curve = 0;
+    for (const SceneAndSplit& group : plan(request)) measure(request, group, curve, file, rows);
+    std::fclose(file);
+  }
+  write_page(request);
+  return 0;
+}
