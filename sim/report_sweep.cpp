@@ -369,8 +369,11 @@ std::string plot_svg_file(const Plot& plot) {
       ".series path{fill:none;stroke:currentColor;stroke-width:2.2}"
       ".series polygon,.series circle{fill:currentColor;stroke:#fdfcf8}"
       ".image,.hue1{color:#b3560b}.polygon,.hue0{color:#1a5fb0}.hue2{color:#6a4c93}.hue3{color:#2a6f3c}"
-      ".hue4{color:#a61e4d}.hue5{color:#0b7285}.hue6{color:#5d5a54}"
-      ".hue4 path,.hue5 path,.hue6 path{stroke-dasharray:7 4}</style>";
+      ".hue4{color:#c2185b}.hue5{color:#0b8f9e}.hue6{color:#5d5a54}"
+      ".zero{stroke:#1c1b19;stroke-width:1.2}.mark{stroke:#a61e4d;stroke-dasharray:2 3}"
+      ".series.wide path{stroke-width:3.6}.series.dashed path{stroke-dasharray:7 4}.series.dotted "
+      "path{stroke-dasharray:2 3}"
+      ".series.bare .point{display:none}</style>";
   svg.insert(svg.find('>') + 1, kStyle);
   return Text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n") + svg;
 }

@@ -18,7 +18,8 @@ struct SweepPlots {
 };
 std::vector<SweepPlots> sweep_plots(const SweepTable& table);
 
-// A plot as a file of its own: colors inside.
+// A plot as a file of its own: colors inside. Its styles may also say "wide", "dashed", "dotted" and "bare" (no
+// points).
 std::string plot_svg_file(const Plot& plot);
 
 // index.html, whole: styles, script and plots are inside.

@@ -1,10 +1,12 @@
-// The experiment: scenes, splits, every codec of ours and of others, at five rates each; a page with curves.
-//   experiment [--quick] [--shard I/N] [--scenes A,B] [--page] -o DIR
+// The experiment: scenes, splits, every codec of ours and of others, at four rates each; a page with curves.
+//   experiment [--quick] [--size N] [--frames N] [--shard I/N] [--scenes A,B] [--page] -o DIR
 // Measures every curve that no DIR/rows*.csv has yet, a line a point as it goes: cut it short, start it again, or run
-// N shards at once into one DIR. Then (with --page: only then) writes DIR.md, DIR/gains.csv, DIR/*.svg from all rows.
-// --quick: three scenes, 192 pixels, 6 frames, three rates.
+// N shards at once into one DIR. Then (with --page: only that) writes DIR.md and DIR/*.svg from all rows; what
+// DIR/conclusions.md says goes to the top of the page. --size: of the longer side. --quick: three scenes, 192 pixels, 6
+// frames, three rates.
 #include <dirent.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -22,7 +24,10 @@
 #include "bench/peers/peer_codecs.h"
 #include "bench/peers/scene_shots.h"
 #include "jpeg/jpeg.h"
+#include "mpeg1/mpeg1.h"
+#include "sim/assisted_video.h"
 #include "sim/difference.h"
+#include "sim/frame420.h"
 #include "sim/match.h"
 
 namespace {
@@ -36,61 +41,81 @@ constexpr int kFramesPerSecond = 20;
 
 struct Request {
   bool quick = false, page_only = false;
+  int size = 384, frames = 24;
   unsigned long shard = 1, shards = 1;
   std::string out, scenes;
+  std::string options;  // what a reader must say to get the same
 };
 
 struct SceneAndSplit {
   std::string scene, split;
 };
 
-// Textured models that Debian's assimp-testmodels has. `fence` in split shading is there to lose: L
-// has one sample a pixel, and bars thinner than it.
+// NAME.obj: a model of debian_models.sh. `fence` in split shading is there to lose: L has one sample a pixel, and bars
+// thinner than it.
 std::vector<SceneAndSplit> plan(const Request& request) {
-  const std::string models = "/usr/share/assimp/models/";
   std::vector<SceneAndSplit> all = {
-      {"room", "texture"},
-      {"room", "lighting"},
-      {"room+moving", "texture"},
-      {"cubes", "texture"},
-      {"cubes", "lighting"},
-      {"cubes+moving", "texture"},
-      {"pin", "tessellation"},
-      {"letter-texture", "texture"},
-      {models + "OBJ/spider.obj", "texture"},
-      {models + "glTF/CesiumMilkTruck/CesiumMilkTruck.gltf", "texture"},
-      {models + "glTF2/BoxTextured-glTF-Binary/BoxTextured.glb", "texture"},
-      {"fence", "texture"},
-      {"fence", "shading"},
+      {"room", "texture"},      {"room", "lighting"},          {"room+moving", "texture"}, {"cubes", "texture"},
+      {"cubes", "lighting"},    {"cubes+moving", "texture"},   {"cubes", "antialiasing"},  {"pin", "tessellation"},
+      {"letter", "shading"},    {"letter-texture", "texture"}, {"spider.obj", "texture"},  {"duck.obj", "texture"},
+      {"truck.obj", "texture"}, {"jeep.obj", "texture"},       {"fence", "texture"},       {"fence", "shading"},
   };
   if (request.quick) all = {{"cubes", "texture"}, {"room", "lighting"}, {"fence", "shading"}};
   if (request.scenes.empty()) return all;
   std::erase_if(all, [&](const SceneAndSplit& one) {
-    const std::string name = one.scene.substr(one.scene.rfind('/') + 1);
-    return (',' + request.scenes + ',').find(',' + name + ',') == std::string::npos;
+    return (',' + request.scenes + ',').find(',' + one.scene + ',') == std::string::npos;
   });
   return all;
 }
 
+// A moved object changes nothing in a still.
+bool is_wanted(const SceneAndSplit& group, const ExperimentArm& arm) {
+  return arm.is_video || group.scene.find('+') == std::string::npos;
+}
+
+// A folder of its own, gone with the object.
+class DebianModels {
+ public:
+  DebianModels() {
+    char folder[] = "/tmp/pac_models_XXXXXX";
+    if (mkdtemp(folder) == nullptr) return;
+    folder_ = folder;
+    if (std::system(
+            ("sh \"" + bench::peers_folder() + "/debian_models.sh\" " + folder_ + " >/dev/null 2>&1").c_str()) != 0)
+      std::printf("Debian's models are not there (assimp-testmodels, assimp-utils, ffmpeg)\n");
+  }
+  ~DebianModels() {
+    if (!folder_.empty() && std::system(("rm -r " + folder_).c_str()) != 0)
+      std::fprintf(stderr, "%s: is left over\n", folder_.c_str());
+  }
+  DebianModels(const DebianModels&) = delete;
+  DebianModels& operator=(const DebianModels&) = delete;
+
+  std::string path_of(const std::string& scene) const {
+    return scene.ends_with(".obj") ? folder_ + '/' + scene : scene;
+  }
+  bool has(const std::string& scene) const {
+    return !scene.ends_with(".obj") || access(path_of(scene).c_str(), R_OK) == 0;
+  }
+
+ private:
+  std::string folder_;
+};
+
 // ---- One curve
+
+std::vector<uint8_t> pixels_of(const RgbImage& image) {
+  std::vector<uint8_t> pixels;
+  for (int y = 0; y < image.height(); ++y)
+    pixels.insert(pixels.end(), image.pixel(0, y), image.pixel(0, y) + 3 * image.width());
+  return pixels;
+}
 
 struct Coded {
   uint64_t bytes = 0;
   std::vector<RgbImage> shown;
   double encode_ms = 0, decode_ms = 0;
 };
-
-// Five, from coarse to fine or the other way round.
-std::vector<double> settings_of(const std::string& arm) {
-  if (arm == "jpeg" || arm == "mjpeg" || arm == "polygons-jpeg" || arm == "polygons-mjpeg") return {5, 12, 25, 45, 70};
-  if (arm == "polygons-avif") return {44, 36, 28, 20, 12};
-  if (arm == "polygons-x264") return {36, 32, 28, 24, 20};
-  for (const bench::StillPeer& peer : bench::still_peers())
-    if (arm == peer.key) return peer.settings;
-  for (const bench::VideoPeer& peer : bench::video_peers())
-    if (arm == peer.key) return {peer.settings.begin(), peer.settings.end()};
-  return {31, 22, 14, 8, 5};
-}
 
 // Pictures drawn once, and what peers need of them written once.
 class Bench {
@@ -164,34 +189,66 @@ class Bench {
   }
 
   Coded code_mpeg1(const ExperimentArm& arm, double setting) {
-    const std::string key = arm.key;
-    const double begin = bench::cpu_ms();
-    std::vector<sim::VideoFrame> frames;
-    if (key == "mpeg1") {
-      sim::ImageVideoOptions options;
-      options.quantizer_scale = setting;
-      options.effort = mpeg1::Effort::best;
-      frames = need(sim::code_image_video(sequence_.shots, options, true), arm.key);
-    } else {
-      sim::AssistedVideoOptions options;
-      const bool is_block = key == "polygons-block", is_model = key == "polygons-model";
-      options.prediction = is_block   ? sim::Prediction::block
-                           : is_model ? sim::Prediction::model
-                                      : sim::Prediction::none;
-      options.difference = is_block ? sim::Difference::halved : sim::Difference::full;
-      options.quantizer_scale = setting;
-      options.effort = mpeg1::Effort::best;
-      std::vector<sim::Shot> first;  // lent: shots are not copied
-      if (!arm.is_video) first.push_back(std::move(sequence_.shots[0]));
-      const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples};
-      frames = need(sim::code_assisted_video(arm.is_video ? sequence_.shots : first, scene, options, best_isa(), true),
-                    arm.key);
-      if (!arm.is_video) sequence_.shots[0] = std::move(first[0]);
-    }
+    std::vector<sim::Shot> first;  // lent: shots are not copied
+    if (!arm.is_video) first.push_back(std::move(sequence_.shots[0]));
+    const std::vector<sim::Shot>& shots = arm.is_video ? sequence_.shots : first;
+    Coded out =
+        std::strcmp(arm.key, "mpeg1") == 0 ? code_plain_mpeg1(shots, setting) : code_assisted(arm.key, shots, setting);
+    if (!arm.is_video) sequence_.shots[0] = std::move(first[0]);
+    return out;
+  }
+
+  Coded code_plain_mpeg1(const std::vector<sim::Shot>& shots, double setting) const {
+    sim::ImageVideoOptions options;
+    options.quantizer_scale = setting;
+    options.effort = mpeg1::Effort::best;
     Coded out;
+    const double begin = bench::cpu_ms();
+    const auto frames = need(sim::code_image_video(shots, options, false), "MPEG-1");
     out.encode_ms = bench::cpu_ms() - begin;
     out.bytes = sim::total_bytes(frames);
-    for (sim::VideoFrame& frame : frames) out.shown.push_back(std::move(frame.shown));
+    const double coded = bench::cpu_ms();
+    mpeg1::Decoder decoder;
+    for (const sim::VideoFrame& frame : frames) decoder.feed(frame.code);
+    decoder.finish();
+    while (const mpeg1::DecodedPicture* picture = need(decoder.next(), "MPEG-1")) {
+      RgbImage shown(sequence_.width, sequence_.height);
+      sim::rgb_from_frame420(mpeg1::copy_of(picture->view), shown.view());
+      out.shown.push_back(std::move(shown));
+    }
+    out.decode_ms = bench::cpu_ms() - coded;
+    return out;
+  }
+
+  // Decoded as a client does it, who has L, depth and ids; its pictures must be the server's.
+  Coded code_assisted(const std::string& key, const std::vector<sim::Shot>& shots, double setting) const {
+    sim::AssistedVideoOptions options;
+    options.prediction = key == "polygons-block"   ? sim::Prediction::block
+                         : key == "polygons-model" ? sim::Prediction::model
+                                                   : sim::Prediction::none;
+    options.difference = key == "polygons-block" ? sim::Difference::halved : sim::Difference::full;
+    options.quantizer_scale = setting;
+    options.effort = mpeg1::Effort::best;
+    const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples};
+    Coded out;
+    const double begin = bench::cpu_ms();
+    const auto frames = need(sim::code_assisted_video(shots, scene, options, best_isa(), true), key.c_str());
+    out.encode_ms = bench::cpu_ms() - begin;
+    out.bytes = sim::total_bytes(frames);
+    auto decoder = need(sim::AssistedDecoder::create(scene), key.c_str());
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const sim::FrameImages& images = shots[i].images;
+      RgbImage shown(sequence_.width, sequence_.height);
+      const double coded = bench::cpu_ms();
+      const auto decoded = decoder.decode(frames[i].code, images.low.view(), images.depth.view(), images.id.view(),
+                                          shots[i].camera, shown.view(), images.objects);
+      out.decode_ms += bench::cpu_ms() - coded;
+      if (!decoded.ok() || !std::ranges::equal(pixels_of(shown), pixels_of(frames[i].shown))) {
+        std::fprintf(stderr, "%s: the client shows another picture\n", key.c_str());
+        std::exit(1);
+      }
+      out.shown.push_back(std::move(shown));
+    }
     return out;
   }
 
@@ -251,26 +308,25 @@ bool has_row(const std::vector<ExperimentRow>& rows, const SceneAndSplit& group,
   });
 }
 
-std::vector<double> wanted_settings(const char* arm, bool quick) {
-  std::vector<double> settings = settings_of(arm);
-  if (quick) settings = {settings[0], settings[2], settings[4]};
+std::vector<double> wanted_settings(const ExperimentArm& arm, bool quick) {
+  std::vector<double> settings(arm.settings.begin(), arm.settings.end());
+  std::erase(settings, 0.0);
+  if (quick) settings = {settings.front(), settings[settings.size() / 2], settings.back()};
   return settings;
 }
 
 // The curves of one scene and split that are this shard's and not there.
-void measure(const Request& request, const SceneAndSplit& group, size_t& curve, std::FILE* file,
-             const std::vector<ExperimentRow>& rows) {
+void measure(const Request& request, const DebianModels& models, const SceneAndSplit& group, size_t& curve,
+             std::FILE* file, const std::vector<ExperimentRow>& rows) {
   std::optional<bench::Sequence> sequence;
   std::optional<Bench> bench;
   for (const ExperimentArm& arm : bench::experiment_arms()) {
-    if (curve++ % request.shards != request.shard - 1) continue;
-    const std::vector<double> settings = wanted_settings(arm.key, request.quick);
-    for (const double setting : settings) {
+    if (!is_wanted(group, arm) || curve++ % request.shards != request.shard - 1) continue;
+    for (const double setting : wanted_settings(arm, request.quick)) {
       if (has_row(rows, group, arm.key, setting)) continue;
       if (!sequence) {
-        bench::NamedScene scene = bench::load_scene(group.scene);
-        sequence =
-            bench::draw(scene, group.split, request.quick ? 6 : 24, request.quick ? 192 : 0, request.quick ? 4 : 16);
+        bench::NamedScene scene = bench::load_scene(models.path_of(group.scene));
+        sequence = bench::draw(scene, group.split, request.frames, request.size, request.quick ? 4 : 16);
         bench.emplace(*sequence);
       }
       const auto coded = bench->code(arm, setting);
@@ -297,22 +353,26 @@ void write(const std::string& path, const std::string& text) {
 
 void write_page(const Request& request) {
   const std::vector<ExperimentRow> rows = rows_in(request.out);
-  size_t missing = 0;
+  bench::PageFrame frame;
   for (const SceneAndSplit& group : plan(request))
     for (const ExperimentArm& arm : bench::experiment_arms()) {
-      const auto settings = wanted_settings(arm.key, request.quick);
-      missing += std::all_of(settings.begin(), settings.end(),
-                             [&](double setting) { return has_row(rows, group, arm.key, setting); })
-                     ? 0
-                     : 1;
+      if (!is_wanted(group, arm)) continue;
+      const auto settings = wanted_settings(arm, request.quick);
+      if (!std::ranges::all_of(settings, [&](double setting) { return has_row(rows, group, arm.key, setting); }))
+        ++frame.n_missing;
     }
   for (const auto& [name, svg] : bench::experiment_plots(rows)) write(request.out + "/" + name + ".svg", svg);
-  write(request.out + "/gains.csv", bench::experiment_gains_csv(rows));
-  const std::string folder = request.out.substr(request.out.rfind('/') + 1);
-  const std::string command =
-      std::string("build/release/bench/peers/experiment ") + (request.quick ? "--quick " : "") + "-o " + request.out;
-  write(request.out + ".md", bench::experiment_page(rows, command, missing, folder));
-  std::printf("%zu rows, %zu curves missing: %s.md\n", rows.size(), missing, request.out.c_str());
+  frame.folder = request.out.substr(request.out.rfind('/') + 1);
+  frame.command = "build/release/bench/peers/experiment " + request.options + "-o " + request.out;
+  if (const auto conclusions = read_file(request.out + "/conclusions.md"); conclusions.ok())
+    frame.conclusions.assign(conclusions->begin(), conclusions->end());
+  write(request.out + ".md", bench::experiment_page(rows, frame));
+  std::printf("%zu rows, %zu curves missing: %s.md\n", rows.size(), frame.n_missing, request.out.c_str());
+}
+
+int positive(const char* text) {
+  const int number = std::atoi(text);
+  return number > 0 && number <= 4096 ? number : 0;
 }
 
 bool parse(int argc, char** argv, Request& request) {
@@ -320,6 +380,15 @@ bool parse(int argc, char** argv, Request& request) {
     const bool has_value = i + 1 < argc;
     if (std::strcmp(argv[i], "--quick") == 0) {
       request.quick = true;
+      request.size = 192;
+      request.frames = 6;
+      request.options += "--quick ";
+    } else if (std::strcmp(argv[i], "--size") == 0 && has_value) {
+      request.options += std::string("--size ") + argv[i + 1] + ' ';
+      if ((request.size = positive(argv[++i])) == 0) return false;
+    } else if (std::strcmp(argv[i], "--frames") == 0 && has_value) {
+      request.options += std::string("--frames ") + argv[i + 1] + ' ';
+      if ((request.frames = positive(argv[++i])) == 0) return false;
     } else if (std::strcmp(argv[i], "--page") == 0) {
       request.page_only = true;
     } else if (std::strcmp(argv[i], "--scenes") == 0 && has_value) {
@@ -340,7 +409,8 @@ bool parse(int argc, char** argv, Request& request) {
 int main(int argc, char** argv) {
   Request request;
   if (!parse(argc, argv, request)) {
-    std::fprintf(stderr, "usage: experiment [--quick] [--shard I/N] [--scenes A,B] [--page] -o DIR\n");
+    std::fprintf(stderr,
+                 "usage: experiment [--quick] [--size N] [--frames N] [--shard I/N] [--scenes A,B] [--page] -o DIR\n");
     return 2;
   }
   mkdir(request.out.c_str(), 0777);
@@ -357,7 +427,9 @@ int main(int argc, char** argv) {
     if (std::fseek(file, 0, SEEK_END) == 0)
       std::fputs(std::ftell(file) == 0 ? bench::row_header().c_str() : "\n", file);
     size_t curve = 0;
-    for (const SceneAndSplit& group : plan(request)) measure(request, group, curve, file, rows);
+    const DebianModels models;
+    for (const SceneAndSplit& group : plan(request))
+      if (models.has(group.scene)) measure(request, models, group, curve, file, rows);
     std::fclose(file);
   }
   write_page(request);

@@ -1,6 +1,7 @@
 // The experiment's page in Markdown, and its plots.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <utility>
@@ -10,15 +11,26 @@
 
 namespace pac::bench {
 
-// Files by name, as `folder`/NAME.svg: one a scene, split and kind, SSIMULACRA 2 against bytes a frame.
+struct ExperimentGroup {
+  std::string scene, split;
+
+  bool operator==(const ExperimentGroup&) const = default;
+};
+std::vector<ExperimentGroup> groups_of(std::span<const ExperimentRow> rows);  // as they come
+std::string group_text(const ExperimentGroup& group);                         // "room, texture"
+
+// Files by name, as FOLDER/NAME.svg: SSIMULACRA 2 against bytes a frame, one a scene, split and kind; then what
+// polygons save JPEG against its compression ratio, as the paper says it.
 std::vector<std::pair<std::string, std::string>> experiment_plots(std::span<const ExperimentRow> rows);
+std::string rate_plot_name(const ExperimentGroup& group, bool is_video);
+constexpr const char* kPaperPlots[] = {"paper-ssimulacra2", "paper-psnr"};
 
-// A line a scene, arm, metric; then over the scenes.
-std::string experiment_gains_csv(std::span<const ExperimentRow> rows);
-
-// `command`: what made the rows. `missing`: curves that are not there yet. `folder`: where the plots are, as the page
-// says it.
-std::string experiment_page(std::span<const ExperimentRow> rows, const std::string& command, size_t missing,
-                            const std::string& folder);
+struct PageFrame {
+  std::string command;      // what made the rows
+  std::string conclusions;  // written by hand, in Markdown
+  std::string folder;       // of the plots, as the page says it
+  size_t n_missing = 0;     // curves that are not there yet
+};
+std::string experiment_page(std::span<const ExperimentRow> rows, const PageFrame& frame);
 
 }  // namespace pac::bench

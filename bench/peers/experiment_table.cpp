@@ -11,34 +11,34 @@ namespace pac::bench {
 
 namespace {
 
-constexpr size_t kVoices = 3;  // metrics of the verdict, the first of kScores
-
+// Rates from coarse to fine, or the other way round: four, of JPEG's stills more, for the paper's curves. Colors say
+// the codec; whole lines have polygons, dashed ones are codecs alone, dotted ones codecs at their best.
 constexpr ExperimentArm kArms[] = {
-    {"polygons-jpeg", "polygons + JPEG", false, "polygon"},
-    {"polygons-still", "polygons, predicted from L", false, "hue2"},
-    {"polygons-avif", "polygons + AVIF", false, "hue5"},
-    {"jpeg", "JPEG", false, "image"},
-    {"mozjpeg", "mozjpeg", false, "hue1"},
-    {"webp", "WebP", false, "hue3"},
-    {"avif", "AVIF", false, "hue4"},
-    {"jpeg-xl", "JPEG XL", false, "hue6"},
-    {"polygons-model", "polygons + MPEG-1, model", true, "polygon"},
-    {"polygons-block", "polygons + MPEG-1, blocks", true, "hue0"},
-    {"polygons-none", "polygons, predicted from L", true, "hue2"},
-    {"polygons-mjpeg", "polygons + motion JPEG", true, "hue2"},
-    {"polygons-x264", "polygons + x264 low delay", true, "hue5"},
-    {"mjpeg", "motion JPEG", true, "hue1"},
-    {"mpeg1", "MPEG-1", true, "image"},
-    {"x264-low-delay", "x264 veryslow, zerolatency", true, "hue3"},
-    {"svt-av1-low-delay", "SVT-AV1 p4, low delay", true, "hue4"},
-    {"x264-best", "x264 veryslow, two-pass, B", true, "hue3"},
-    {"x265-low-delay", "x265 slower, zerolatency", true, "hue6"},
-    {"svt-av1-best", "SVT-AV1 p4, random access", true, "hue4"},
+    {"polygons-jpeg", "polygons + JPEG", false, "image", {3, 7, 15, 30, 50, 75, 92}},
+    {"polygons-still", "polygons, predicted from L", false, "polygon wide", {26, 13, 7, 4}},
+    {"polygons-avif", "polygons + AVIF", false, "hue4", {46, 36, 26, 16}},
+    {"jpeg", "JPEG", false, "image dashed", {3, 7, 15, 30, 50, 75, 92}},
+    {"mozjpeg", "mozjpeg", false, "hue6 dashed", {15, 35, 55, 80}},
+    {"webp", "WebP", false, "hue3 dashed", {5, 30, 60, 85}},
+    {"avif", "AVIF", false, "hue4 dashed", {52, 42, 32, 22}},
+    {"jpeg-xl", "JPEG XL", false, "hue5 dashed", {10, 6, 3, 1.5}},
+    {"polygons-model", "polygons + MPEG-1, model", true, "polygon wide", {26, 13, 7, 4}},
+    {"polygons-block", "polygons + MPEG-1, blocks", true, "hue2", {26, 13, 7, 4}},
+    {"polygons-none", "polygons, predicted from L", true, "hue5", {26, 13, 7, 4}},
+    {"polygons-mjpeg", "polygons + motion JPEG", true, "image", {8, 20, 45, 75}},
+    {"polygons-x264", "polygons + x264 low delay", true, "hue3", {38, 32, 26, 20}},
+    {"mjpeg", "motion JPEG", true, "image dashed", {8, 20, 45, 75}},
+    {"mpeg1", "MPEG-1", true, "hue2 dashed", {26, 13, 7, 4}},
+    {"x264-low-delay", "x264 veryslow, zerolatency", true, "hue3 dashed", {40, 34, 28, 22}},
+    {"x264-best", "x264 veryslow, two-pass, B", true, "hue3 dotted", {25, 75, 225, 675}},
+    {"x265-low-delay", "x265 slower, zerolatency", true, "hue6 dashed", {40, 34, 28, 22}},
+    {"svt-av1-low-delay", "SVT-AV1, low delay", true, "hue4 dashed", {60, 48, 36, 24}},
+    {"svt-av1-best", "SVT-AV1 p4, random access", true, "hue4 dotted", {60, 48, 36, 24}},
 };
 
 std::string number_text(double number) {
   char buffer[40];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, 8).ptr};
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, number, std::chars_format::general, 6).ptr};
 }
 
 std::vector<std::string_view> split_at(std::string_view text, char mark) {
@@ -79,29 +79,56 @@ bool parse_row(std::string_view line, ExperimentRow& row) {
   return find_arm(row.arm) != nullptr && row.bytes > 0;
 }
 
+double score_of(const ExperimentRow& row, size_t kind, bool of_worst) {
+  return of_worst ? row.scores[kind].worst_5_percent : row.scores[kind].mean;
+}
+
+// Of all scores that a curve reaches.
+double score_span(std::span<const RatePoint> points) {
+  const auto [low, high] = std::minmax_element(
+      points.begin(), points.end(), [](const RatePoint& a, const RatePoint& b) { return a.quality < b.quality; });
+  return high->quality - low->quality;
+}
+
 sim::MetricGains gains_of(const ExperimentCurve& reference, const ExperimentCurve& test, bool of_worst) {
+  constexpr double kLeastShare = 0.2;
   sim::MetricGains gains;
   for (size_t kind = 0; kind < sim::kScoreCount; ++kind) {
     std::vector<RatePoint> points[2];
     for (int side = 0; side < 2; ++side)
       for (const ExperimentRow& row : side == 0 ? reference : test)
-        points[side].push_back(
-            {static_cast<double>(row.bytes), of_worst ? row.scores[kind].worst_5_percent : row.scores[kind].mean});
+        points[side].push_back({static_cast<double>(row.bytes), score_of(row, kind, of_worst)});
     const auto rate = bd_rate(points[0], points[1]);
-    if (rate.ok()) gains[kind] = rate->percent;
+    if (!rate.ok()) continue;
+    const double shared = rate->highest_quality - rate->lowest_quality;
+    if (shared >= kLeastShare * std::min(score_span(points[0]), score_span(points[1]))) gains[kind] = rate->percent;
   }
   return gains;
 }
 
-// ln(bytes) of the curve at a score, between its points; empty outside.
-std::optional<double> log_bytes_at(const ExperimentCurve& curve, size_t kind, double score) {
-  for (size_t i = 1; i < curve.size(); ++i) {
-    const double a = curve[i - 1].scores[kind].mean, b = curve[i].scores[kind].mean;
-    if (a == b || (score - a) * (score - b) > 0) continue;
-    const double low = std::log(static_cast<double>(curve[i - 1].bytes));
-    return low + (std::log(static_cast<double>(curve[i].bytes)) - low) * (score - a) / (b - a);
-  }
-  return std::nullopt;
+// What is known of a curve at `bytes`: linear over their logarithm, clamped to its ends.
+QualitySummary summary_at(const ExperimentCurve& curve, double bytes) {
+  size_t i = 1;
+  while (i + 1 < curve.size() && static_cast<double>(curve[i].bytes) < bytes) ++i;
+  const double low = std::log(static_cast<double>(curve[i - 1].bytes));
+  const double span = std::log(static_cast<double>(curve[i].bytes)) - low;
+  const double part = span > 0 ? std::clamp((std::log(bytes) - low) / span, 0.0, 1.0) : 0.0;
+  const auto mix = [&](size_t kind) -> FrameSummary {
+    const FrameSummary &a = curve[i - 1].scores[kind], &b = curve[i].scores[kind];
+    return {a.mean + part * (b.mean - a.mean), a.worst_5_percent + part * (b.worst_5_percent - a.worst_5_percent)};
+  };
+  return {static_cast<uint64_t>(std::exp(low + part * span)), mix(0), mix(1), mix(2)};
+}
+
+// At the middle, by logarithms, of the bytes that both reach; else the larger end of the smaller curve against the
+// smaller end of the larger one.
+Verdict verdict_of(const ExperimentCurve& reference, const ExperimentCurve& test) {
+  const auto low = static_cast<double>(std::max(reference.front().bytes, test.front().bytes));
+  const auto high = static_cast<double>(std::min(reference.back().bytes, test.back().bytes));
+  const double middle = std::sqrt(low * high);
+  QualitySummary first = summary_at(reference, middle), second = summary_at(test, middle);
+  if (low <= high) first.size_bytes = second.size_bytes;
+  return compare_summaries(first, second);
 }
 
 }  // namespace
@@ -155,17 +182,6 @@ ExperimentCurve curve_of(std::span<const ExperimentRow> rows, const std::string&
   return curve;
 }
 
-ArmGain::Agreement ArmGain::agreement() const {
-  int n_better = 0, n_worse = 0;
-  for (const sim::MetricGains* gains : {&mean, &worst})
-    for (size_t kind = 0; kind < kVoices; ++kind) {
-      n_better += (*gains)[kind] && *(*gains)[kind] < 0 ? 1 : 0;
-      n_worse += (*gains)[kind] && *(*gains)[kind] > 0 ? 1 : 0;
-    }
-  constexpr int kAll = 2 * static_cast<int>(kVoices);
-  return n_better == kAll ? Agreement::better : n_worse == kAll ? Agreement::worse : Agreement::disagree;
-}
-
 std::vector<ArmGain> arm_gains(std::span<const ExperimentRow> rows, const std::string& split, const std::string& test,
                                const std::string& reference) {
   std::vector<ArmGain> gains;
@@ -178,7 +194,8 @@ std::vector<ArmGain> arm_gains(std::span<const ExperimentRow> rows, const std::s
     const ExperimentCurve ours = curve_of(rows, row.scene, row.split, test);
     const ExperimentCurve theirs = curve_of(rows, row.scene, row.split, reference);
     if (ours.size() < 2 || theirs.size() < 2) continue;
-    gains.push_back({row.scene, row.split, gains_of(theirs, ours, false), gains_of(theirs, ours, true)});
+    gains.push_back(
+        {row.scene, row.split, gains_of(theirs, ours, false), gains_of(theirs, ours, true), verdict_of(theirs, ours)});
   }
   return gains;
 }
@@ -191,23 +208,23 @@ std::optional<sim::GainInterval> over_scenes(std::span<const ArmGain> gains, siz
   return sim::bootstrap_interval(percents);
 }
 
-std::optional<double> crossing_ratio(const ExperimentCurve& reference, const ExperimentCurve& test, size_t kind) {
-  if (reference.empty()) return std::nullopt;
-  const double bits = 24.0 * reference[0].width * reference[0].height;
-  std::optional<double> before_bytes, before_gap;
-  for (size_t i = 1; i < reference.size(); ++i) {
-    constexpr int kSteps = 64;
-    for (int step = 0; step <= kSteps; ++step) {
-      const double part = static_cast<double>(step) / kSteps;
-      const double a = reference[i - 1].scores[kind].mean, b = reference[i].scores[kind].mean;
-      const auto theirs = log_bytes_at(reference, kind, a + part * (b - a));
-      const auto ours = log_bytes_at(test, kind, a + part * (b - a));
-      if (!theirs || !ours) continue;
-      const double gap = *ours - *theirs;
-      if (before_gap && *before_gap < 0 && gap >= 0) return bits / (8 * std::exp(*before_bytes)) * reference[0].frames;
-      before_gap = gap;
-      before_bytes = *theirs;
-    }
+std::optional<double> log_bytes_at(const ExperimentCurve& curve, size_t kind, double score) {
+  for (size_t i = 1; i < curve.size(); ++i) {
+    const double a = curve[i - 1].scores[kind].mean, b = curve[i].scores[kind].mean;
+    if (a == b || (score - a) * (score - b) > 0) continue;
+    const double low = std::log(static_cast<double>(curve[i - 1].bytes));
+    return low + (std::log(static_cast<double>(curve[i].bytes)) - low) * (score - a) / (b - a);
+  }
+  return std::nullopt;
+}
+
+std::optional<double> score_at(const ExperimentCurve& curve, size_t kind, double bytes) {
+  for (size_t i = 1; i < curve.size(); ++i) {
+    const auto low = static_cast<double>(curve[i - 1].bytes), high = static_cast<double>(curve[i].bytes);
+    if (bytes < low || bytes > high || low == high) continue;
+    const double part = std::log(bytes / low) / std::log(high / low);
+    const double a = curve[i - 1].scores[kind].mean;
+    return a + part * (curve[i].scores[kind].mean - a);
   }
   return std::nullopt;
 }

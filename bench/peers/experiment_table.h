@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/verdict.h"
 #include "sim/sweep_gain.h"
 #include "sim/video_scores.h"
 
@@ -18,7 +19,8 @@ struct ExperimentArm {
   const char* key;    // of the tables
   const char* label;  // of the page
   bool is_video;
-  const char* style;  // of sim/report_plot.h
+  const char* style;               // of sim/report_sweep.h's plot_svg_file
+  std::array<double, 7> settings;  // quality, quantizer, crf or kb/s; 0: no more
 };
 std::span<const ExperimentArm> experiment_arms();
 const ExperimentArm* find_arm(const std::string& key);
@@ -44,15 +46,12 @@ using ExperimentCurve = std::vector<ExperimentRow>;
 ExperimentCurve curve_of(std::span<const ExperimentRow> rows, const std::string& scene, const std::string& split,
                          const std::string& arm);
 
-// Bytes of `test` over bytes of `reference` at equal score, percent below or above 100.
+// Bytes of `test` over bytes of `reference` at equal score, percent below or above 100; empty where the two curves
+// share less than a fifth of the shorter one's scores.
 struct ArmGain {
   std::string scene, split;
   sim::MetricGains mean, worst;
-
-  // The verdict's three metrics agree on mean and worst frames: below 0 all, above 0 all; else (or one has no common
-  // range) they disagree.
-  enum class Agreement { better, worse, disagree };
-  Agreement agreement() const;
+  Verdict verdict;  // at equal bytes, the test second; bytes_differ: no equal bytes, and the smaller one is not better
 };
 
 // Scenes of that split in which both have curves; `split` empty: of all.
@@ -62,8 +61,10 @@ std::vector<ArmGain> arm_gains(std::span<const ExperimentRow> rows, const std::s
 // Over scenes: sim/sweep_gain.h's geometric mean and bootstrap.
 std::optional<sim::GainInterval> over_scenes(std::span<const ArmGain> gains, size_t kind, bool of_worst);
 
-// Compression ratio (24 bits a pixel over the file) below which `test` needs more bytes than `reference` for the same
-// score, by the logarithm of bytes between the points; empty where the curves do not cross.
-std::optional<double> crossing_ratio(const ExperimentCurve& reference, const ExperimentCurve& test, size_t kind);
+// ln(bytes) of the curve at a mean score, straight between its points; empty outside.
+std::optional<double> log_bytes_at(const ExperimentCurve& curve, size_t kind, double score);
+
+// A mean score at bytes, straight over their logarithm; empty outside.
+std::optional<double> score_at(const ExperimentCurve& curve, size_t kind, double bytes);
 
 }  // namespace pac::bench

@@ -6,6 +6,8 @@
 //   moz-flat-all  the same with every option of the trellis: more loops and passes, tables and zero blocks optimized
 //   moz-ms-ssim   table 2, tuned for MS-SSIM
 //   moz-psnr-hvs  table 4, tuned for PSNR-HVS-M
+//   node mozjpeg_files.mjs --quality Q NAME.ppm OUT.jpg
+// writes one file as the package does by default: progressive.
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
@@ -33,6 +35,12 @@ function readPpm(path) {
   return {data, width, height};
 }
 
+if (process.argv[2] === '--quality') {
+  const [quality, source, out] = process.argv.slice(3);
+  const file = await encode(readPpm(source), {quality: Number(quality), progressive: true, chroma_subsample: 2});
+  fs.writeFileSync(out, Buffer.from(file));
+  process.exit();
+}
 for (const path of process.argv.slice(2)) {
   const image = readPpm(path);
   for (const [name, quant_table, all] of [['moz-default', 3, false], ['moz-flat', 1, false], ['moz-flat-all', 1, true],

@@ -33,6 +33,10 @@ std::string filled(const char* pattern, double setting, bool is_whole) {
 
 }  // namespace
 
+std::string peers_folder() {
+  return PAC_PEERS_FOLDER;
+}
+
 const std::vector<VideoPeer>& video_peers() {
   static const std::vector<VideoPeer> list = {
       {"x264-low-delay",
@@ -53,7 +57,7 @@ const std::vector<VideoPeer>& video_peers() {
        true},
       {"x265-low-delay",
        "x265 slower, zerolatency",
-       "-c:v libx265 -preset slower -tune zerolatency -x265-params log-level=0:keyint=600 -crf %d",
+       "-c:v libx265 -preset slower -tune zerolatency -x265-params log-level=0:keyint=600:info=0 -crf %d",
        "hevc",
        {24, 28, 32, 36, 40}},
       {"svt-av1-best",
@@ -69,12 +73,12 @@ const std::vector<StillPeer>& still_peers() {
   static const std::vector<StillPeer> list = {
       {"mozjpeg",
        "mozjpeg",
-       "[ -f source.moz-default.75.jpg ] || (cd \"$PAC_MOZJPEG\" && node \"$PAC_PEERS/mozjpeg_files.mjs\" "
-       "\"$OLDPWD/source.ppm\") && cp source.moz-default.%g.jpg coded.jpg",
+       "folder=$PWD && cd \"$PAC_MOZJPEG\" && node \"$PAC_PEERS/mozjpeg_files.mjs\" --quality %g "
+       "\"$folder/source.ppm\" "
+       "\"$folder/coded.jpg\" && cd \"$folder\"",
        "djpeg -pnm coded.jpg >shown.ppm",
        "jpg",
-       {15, 30, 45, 60, 75},
-       false},
+       {15, 30, 45, 60, 75}},
       {"webp",
        "WebP",
        "cwebp -quiet -m 6 -sharp_yuv -q %g source.png -o coded.webp",
@@ -138,7 +142,9 @@ std::optional<PeerCode> PeerRunner::video(const VideoPeer& peer, int setting) {
   PeerCode out;
   const double begin = children_cpu_ms();
   if (peer.two_pass && !run(encode + "-pass 1 -f null /dev/null")) return std::nullopt;
-  if (!run(encode + (peer.two_pass ? "-pass 2 " : "") + "-f " + peer.format + " " + code)) return std::nullopt;
+  // Unit 6 of H.264 is a text about the encoder, 600 bytes: no part of the pictures. (libx265: info=0.)
+  const std::string lean = std::strcmp(peer.format, "h264") == 0 ? "-bsf:v filter_units=remove_types=6 " : "";
+  if (!run(encode + lean + (peer.two_pass ? "-pass 2 " : "") + "-f " + peer.format + " " + code)) return std::nullopt;
   const double encoded = children_cpu_ms();
   if (!run(quiet + "-i " + code + " -f rawvideo -pix_fmt yuv420p shown.yuv")) return std::nullopt;
   out.encode_ms = encoded - begin;
@@ -171,7 +177,7 @@ std::optional<PeerCode> PeerRunner::still(const StillPeer& peer, double setting)
   if (!run(filled(peer.encode, setting, false))) return std::nullopt;
   const double encoded = children_cpu_ms();
   if (!run(peer.decode)) return std::nullopt;
-  if (peer.is_timed) out.encode_ms = encoded - begin;
+  out.encode_ms = encoded - begin;
   out.decode_ms = children_cpu_ms() - encoded;
   const auto file = read_file(folder_ + "/coded." + peer.extension);
   auto picture = read_file(folder_ + "/shown.ppm");

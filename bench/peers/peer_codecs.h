@@ -30,13 +30,16 @@ struct StillPeer {
   const char* decode;  // to shown.png
   const char* extension;
   std::vector<double> settings;  // from coarse to fine
-  bool is_timed = true;          // false: the program codes all settings at once
 };
 const std::vector<StillPeer>& still_peers();
 
+// Where the scripts of this folder are.
+std::string peers_folder();
+
 // What a viewer of the peer's code sees.
 struct PeerCode {
-  uint64_t bytes = 0;  // raw H.264 and H.265, IVF less its headers; whole files of stills
+  uint64_t bytes =
+      0;  // raw H.264 and H.265 less remarks about the encoder, IVF less its headers; whole files of stills
   std::vector<RgbImage> shown;
   double encode_ms = 0, decode_ms = 0;  // CPU time of the programs, start and files included; 0: not known
 };
