@@ -12,23 +12,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/file_io.h"
+#include "bench/peers/experiment_codecs.h"
 #include "bench/peers/experiment_page.h"
 #include "bench/peers/experiment_table.h"
 #include "bench/peers/peer_codecs.h"
 #include "bench/peers/scene_shots.h"
-#include "jpeg/jpeg.h"
-#include "mpeg1/mpeg1.h"
-#include "sim/assisted_video.h"
-#include "sim/difference.h"
-#include "sim/frame420.h"
-#include "sim/match.h"
 
 namespace {
 
@@ -36,8 +29,6 @@ using namespace pac;
 using bench::ExperimentArm;
 using bench::ExperimentRow;
 using bench::need;
-
-constexpr int kFramesPerSecond = 20;
 
 struct Request {
   bool quick = false, page_only = false;
@@ -104,160 +95,8 @@ class DebianModels {
 
 // ---- One curve
 
-std::vector<uint8_t> pixels_of(const RgbImage& image) {
-  std::vector<uint8_t> pixels;
-  for (int y = 0; y < image.height(); ++y)
-    pixels.insert(pixels.end(), image.pixel(0, y), image.pixel(0, y) + 3 * image.width());
-  return pixels;
-}
-
-struct Coded {
-  uint64_t bytes = 0;
-  std::vector<RgbImage> shown;
-  double encode_ms = 0, decode_ms = 0;
-};
-
-// Pictures drawn once, and what peers need of them written once.
-class Bench {
- public:
-  explicit Bench(bench::Sequence& sequence) : sequence_(sequence) {}
-
-  std::optional<Coded> code(const ExperimentArm& arm, double setting) {
-    const std::string key = arm.key;
-    if (key == "jpeg" || key == "mjpeg" || key == "polygons-jpeg" || key == "polygons-mjpeg")
-      return code_jpeg(arm.is_video, key.starts_with("polygons"), setting);
-    if (key == "polygons-avif") return composite(still_peer("avif", differences(), setting));
-    if (key == "polygons-x264") return composite(video_peer("x264-low-delay", differences(), setting));
-    if (key == "mpeg1" || key.starts_with("polygons")) return code_mpeg1(arm, setting);
-    return arm.is_video ? video_peer(key, pictures(), setting) : still_peer(key, pictures(), setting);
-  }
-
- private:
-  bench::PeerRunner& runner(std::unique_ptr<bench::PeerRunner>& runner, RgbImage sim::FrameImages::*member) const {
-    if (!runner) {
-      std::vector<ConstRgbView> views;
-      for (const sim::Shot& shot : sequence_.shots) views.push_back((shot.images.*member).view());
-      runner = std::make_unique<bench::PeerRunner>(std::move(views), kFramesPerSecond);
-    }
-    return *runner;
-  }
-  bench::PeerRunner& pictures() { return runner(pictures_, &sim::FrameImages::high); }
-  bench::PeerRunner& differences() { return runner(differences_, &sim::FrameImages::difference); }
-
-  static std::optional<Coded> coded(std::optional<bench::PeerCode> code) {
-    if (!code) return std::nullopt;
-    return Coded{code->bytes, std::move(code->shown), code->encode_ms, code->decode_ms};
-  }
-  static std::optional<Coded> video_peer(const std::string& key, bench::PeerRunner& runner, double setting) {
-    for (const bench::VideoPeer& peer : bench::video_peers())
-      if (key == peer.key) return coded(runner.video(peer, static_cast<int>(setting)));
-    return std::nullopt;
-  }
-  static std::optional<Coded> still_peer(const std::string& key, bench::PeerRunner& runner, double setting) {
-    for (const bench::StillPeer& peer : bench::still_peers())
-      if (key == peer.key) return coded(runner.still(peer, setting));
-    return std::nullopt;
-  }
-
-  // L plus twice what was shown.
-  std::optional<Coded> composite(std::optional<Coded> code) const {
-    for (size_t i = 0; code && i < code->shown.size(); ++i)
-      sim::composite_image(sequence_.shots[i].images.low.view(), code->shown[i].view(), code->shown[i].view());
-    return code;
-  }
-
-  Coded code_jpeg(bool is_video, bool is_difference, double setting) const {
-    sim::CodingOptions options;
-    options.huffman = jpeg::Huffman::optimal;
-    const sim::Content content = is_difference ? sim::Content::difference : sim::Content::image;
-    Coded out;
-    for (size_t i = 0; i < (is_video ? sequence_.shots.size() : 1); ++i) {
-      const sim::FrameImages& images = sequence_.shots[i].images;
-      const double begin = bench::cpu_ms();
-      const auto file = need(sim::code_at_quality((is_difference ? images.difference : images.high).view(), content,
-                                                  sim::coded_quality(setting, content), options),
-                             "JPEG");
-      const double encoded = bench::cpu_ms();
-      RgbImage shown = need(jpeg::decode(file.bytes), "JPEG");
-      if (is_difference) sim::composite_image(images.low.view(), shown.view(), shown.view());
-      out.encode_ms += encoded - begin;
-      out.decode_ms += bench::cpu_ms() - encoded;
-      out.bytes += file.bytes.size();
-      out.shown.push_back(std::move(shown));
-    }
-    return out;
-  }
-
-  Coded code_mpeg1(const ExperimentArm& arm, double setting) {
-    std::vector<sim::Shot> first;  // lent: shots are not copied
-    if (!arm.is_video) first.push_back(std::move(sequence_.shots[0]));
-    const std::vector<sim::Shot>& shots = arm.is_video ? sequence_.shots : first;
-    Coded out =
-        std::strcmp(arm.key, "mpeg1") == 0 ? code_plain_mpeg1(shots, setting) : code_assisted(arm.key, shots, setting);
-    if (!arm.is_video) sequence_.shots[0] = std::move(first[0]);
-    return out;
-  }
-
-  Coded code_plain_mpeg1(const std::vector<sim::Shot>& shots, double setting) const {
-    sim::ImageVideoOptions options;
-    options.quantizer_scale = setting;
-    options.effort = mpeg1::Effort::best;
-    Coded out;
-    const double begin = bench::cpu_ms();
-    const auto frames = need(sim::code_image_video(shots, options, false), "MPEG-1");
-    out.encode_ms = bench::cpu_ms() - begin;
-    out.bytes = sim::total_bytes(frames);
-    const double coded = bench::cpu_ms();
-    mpeg1::Decoder decoder;
-    for (const sim::VideoFrame& frame : frames) decoder.feed(frame.code);
-    decoder.finish();
-    while (const mpeg1::DecodedPicture* picture = need(decoder.next(), "MPEG-1")) {
-      RgbImage shown(sequence_.width, sequence_.height);
-      sim::rgb_from_frame420(mpeg1::copy_of(picture->view), shown.view());
-      out.shown.push_back(std::move(shown));
-    }
-    out.decode_ms = bench::cpu_ms() - coded;
-    return out;
-  }
-
-  // Decoded as a client does it, who has L, depth and ids; its pictures must be the server's.
-  Coded code_assisted(const std::string& key, const std::vector<sim::Shot>& shots, double setting) const {
-    sim::AssistedVideoOptions options;
-    options.prediction = key == "polygons-block"   ? sim::Prediction::block
-                         : key == "polygons-model" ? sim::Prediction::model
-                                                   : sim::Prediction::none;
-    options.difference = key == "polygons-block" ? sim::Difference::halved : sim::Difference::full;
-    options.quantizer_scale = setting;
-    options.effort = mpeg1::Effort::best;
-    const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples};
-    Coded out;
-    const double begin = bench::cpu_ms();
-    const auto frames = need(sim::code_assisted_video(shots, scene, options, best_isa(), true), key.c_str());
-    out.encode_ms = bench::cpu_ms() - begin;
-    out.bytes = sim::total_bytes(frames);
-    auto decoder = need(sim::AssistedDecoder::create(scene), key.c_str());
-    for (size_t i = 0; i < frames.size(); ++i) {
-      const sim::FrameImages& images = shots[i].images;
-      RgbImage shown(sequence_.width, sequence_.height);
-      const double coded = bench::cpu_ms();
-      const auto decoded = decoder.decode(frames[i].code, images.low.view(), images.depth.view(), images.id.view(),
-                                          shots[i].camera, shown.view(), images.objects);
-      out.decode_ms += bench::cpu_ms() - coded;
-      if (!decoded.ok() || !std::ranges::equal(pixels_of(shown), pixels_of(frames[i].shown))) {
-        std::fprintf(stderr, "%s: the client shows another picture\n", key.c_str());
-        std::exit(1);
-      }
-      out.shown.push_back(std::move(shown));
-    }
-    return out;
-  }
-
-  bench::Sequence& sequence_;
-  std::unique_ptr<bench::PeerRunner> pictures_, differences_;
-};
-
 ExperimentRow row_of(const SceneAndSplit& group, const ExperimentArm& arm, double setting,
-                     const bench::Sequence& sequence, const Coded& coded) {
+                     const bench::Sequence& sequence, const bench::PeerCode& coded) {
   ExperimentRow row;
   row.scene = group.scene;
   row.split = group.split;
@@ -319,7 +158,7 @@ std::vector<double> wanted_settings(const ExperimentArm& arm, bool quick) {
 void measure(const Request& request, const DebianModels& models, const SceneAndSplit& group, size_t& curve,
              std::FILE* file, const std::vector<ExperimentRow>& rows) {
   std::optional<bench::Sequence> sequence;
-  std::optional<Bench> bench;
+  std::optional<bench::ExperimentCodecs> codecs;
   for (const ExperimentArm& arm : bench::experiment_arms()) {
     if (!is_wanted(group, arm) || curve++ % request.shards != request.shard - 1) continue;
     for (const double setting : wanted_settings(arm, request.quick)) {
@@ -327,9 +166,9 @@ void measure(const Request& request, const DebianModels& models, const SceneAndS
       if (!sequence) {
         bench::NamedScene scene = bench::load_scene(models.path_of(group.scene));
         sequence = bench::draw(scene, group.split, request.frames, request.size, request.quick ? 4 : 16);
-        bench.emplace(*sequence);
+        codecs.emplace(*sequence);
       }
-      const auto coded = bench->code(arm, setting);
+      const auto coded = codecs->code(arm, setting);
       if (!coded) {
         std::printf("%s, %s: %s is not there\n", group.scene.c_str(), group.split.c_str(), arm.label);
         break;
