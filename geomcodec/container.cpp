@@ -19,7 +19,7 @@ enum Flag : uint8_t {
   kHasNormals = 16,
   kHasTexcoords = 32,
   kTrained = 64,
-  kAllFlags = 127
+  kHasFaceValues = 128
 };
 
 void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
@@ -34,6 +34,13 @@ void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
   for (int axis = 0; axis < 3; ++axis)
     if (!std::isfinite(header.origin[axis]) || !std::isfinite(header.step[axis]) || !(header.step[axis] > 0))
       reader.fail(Error::corrupt, "grid is not finite");
+}
+
+void parse_face_values(ByteReader& reader, Header& header) {
+  header.face_bits = reader.u8();
+  header.face_components = reader.u8();
+  if (header.face_bits < 1 || header.face_bits > 16 || header.face_components < 1 || header.face_components > 4)
+    reader.fail(Error::corrupt, "values of faces are not 1..4 of 1..16 bits");
 }
 
 void parse_attributes(ByteReader& reader, uint8_t flags, Header& header) {
@@ -74,10 +81,14 @@ void put_grid(std::vector<uint8_t>& out, const Header& header, uint8_t flags) {
     for (int axis = 0; axis < ((flags & kOneStep) != 0 ? 1 : 3); ++axis) put_float(out, header.step[axis]);
   }
   if (header.normal_bits != 0) out.push_back(static_cast<uint8_t>(header.normal_bits));
-  if (header.texcoord_bits == 0) return;
-  out.push_back(static_cast<uint8_t>(header.texcoord_bits));
-  for (const float origin : header.texcoord_origin) put_float(out, origin);
-  put_float(out, header.texcoord_step);
+  if (header.texcoord_bits != 0) {
+    out.push_back(static_cast<uint8_t>(header.texcoord_bits));
+    for (const float origin : header.texcoord_origin) put_float(out, origin);
+    put_float(out, header.texcoord_step);
+  }
+  if (header.face_bits == 0) return;
+  out.push_back(static_cast<uint8_t>(header.face_bits));
+  out.push_back(static_cast<uint8_t>(header.face_components));
 }
 
 uint8_t flags_of(const Header& header) {
@@ -88,7 +99,8 @@ uint8_t flags_of(const Header& header) {
   return static_cast<uint8_t>((header.keeps_order ? kKeepsOrder : 0) | (header.constant_color ? kConstantColor : 0) |
                               (unit_grid ? kUnitGrid : 0) | (one_step && !unit_grid ? kOneStep : 0) |
                               (header.normal_bits != 0 ? kHasNormals : 0) |
-                              (header.texcoord_bits != 0 ? kHasTexcoords : 0) | (header.trained ? kTrained : 0));
+                              (header.texcoord_bits != 0 ? kHasTexcoords : 0) | (header.trained ? kTrained : 0) |
+                              (header.face_bits != 0 ? kHasFaceValues : 0));
 }
 
 }  // namespace
@@ -118,6 +130,8 @@ bool Header::has(Section section) const {
       return n_vertices() > 0 && texcoord_bits != 0;
     case kMaterials:
       return highest_material > 0;
+    case kFaceValues:
+      return n_faces > 0 && face_bits != 0;
     case kOrder:
       return keeps_order && n_vertices() > 0;
     case kSections:
@@ -152,7 +166,6 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
   if (reader.u8() != kVersion && reader.ok()) return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
-  if ((flags & ~kAllFlags) != 0) return Failure{Error::unsupported, 4, "stream uses features that are unknown"};
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
     return Failure{Error::corrupt, 4, "flags contradict one another"};
 
@@ -163,6 +176,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.trained = (flags & kTrained) != 0;
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
+  if ((flags & kHasFaceValues) != 0) parse_face_values(reader, header);
   parse_counts(reader, header);
   if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
   if (header.constant_color)
@@ -206,10 +220,12 @@ Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
   info.keeps_order = header.keeps_order;
   info.normal_bits = header.normal_bits;
   info.texcoord_bits = header.texcoord_bits;
+  info.face_bits = header.face_bits;
+  info.face_components = header.face_components;
   info.n_points = header.n_points();
   const auto& size = header.section_bytes;
-  info.size = {parsed.header_bytes, size[kConnectivity], size[kSeams],     size[kPositions], size[kColors],
-               size[kNormals],      size[kTexcoords],    size[kMaterials], size[kOrder]};
+  info.size = {parsed.header_bytes, size[kConnectivity], size[kSeams],     size[kPositions],  size[kColors],
+               size[kNormals],      size[kTexcoords],    size[kMaterials], size[kFaceValues], size[kOrder]};
   return info;
 }
 

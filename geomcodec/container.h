@@ -21,6 +21,7 @@ enum Section : uint32_t {
   kNormals,
   kTexcoords,
   kMaterials,
+  kFaceValues,
   kOrder,
   kSections
 };
@@ -35,9 +36,10 @@ struct Header {
   int normal_bits = 0, texcoord_bits = 0;  // 0: none
   float texcoord_origin[2] = {0, 0};
   float texcoord_step = 1;
-  uint32_t n_used_vertices = 0;      // those that faces use
-  uint32_t n_split_vertices = 0;     // of them: those at a position that one before them has
-  uint32_t n_isolated_vertices = 0;  // the rest
+  int face_bits = 0, face_components = 0;  // 0: faces have no values
+  uint32_t n_used_vertices = 0;            // those that faces use
+  uint32_t n_split_vertices = 0;           // of them: those at a position that one before them has
+  uint32_t n_isolated_vertices = 0;        // the rest
   uint32_t n_faces = 0;
   uint32_t n_corners = 0;
   uint32_t highest_material = 0;
@@ -67,7 +69,7 @@ struct ParsedStream {
     return offset;
   }
 };
-// Fails with truncated, unsupported (version, flags), corrupt (magic, a field out of range, checksum, trailing bytes).
+// Fails with truncated, unsupported (version), corrupt (magic, a field out of range, checksum, trailing bytes).
 Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes);
 
 }  // namespace pac::geomcodec

@@ -4,6 +4,7 @@
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
 #include "geomcodec/container.h"
+#include "geomcodec/face_values.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/positions.h"
@@ -18,9 +19,10 @@ Result<void> check_limits(const Header& header, const Limits& limits) {
   const uint64_t n_triangles = uint64_t{header.n_corners} - uint64_t{2} * header.n_faces;
   if (n_triangles > limits.max_triangles)
     return Failure{Error::limit_exceeded, 0, "mesh has more triangles than the limit"};
-  const uint64_t decoded_bytes = uint64_t{header.n_vertices()} * sizeof(QuantizedVertex) +
-                                 uint64_t{header.n_corners} * sizeof(uint32_t) +
-                                 uint64_t{header.n_faces} * sizeof(Face);
+  const uint64_t decoded_bytes =
+      uint64_t{header.n_vertices()} * sizeof(QuantizedVertex) + uint64_t{header.n_corners} * sizeof(uint32_t) +
+      uint64_t{header.n_faces} * sizeof(Face) +
+      uint64_t{header.n_faces} * static_cast<uint32_t>(header.face_components) * sizeof(uint16_t);
   if (decoded_bytes > limits.max_bytes)
     return Failure{Error::limit_exceeded, 0, "decoded mesh is larger than the limit"};
   return {};
@@ -44,7 +46,11 @@ void restore_order(const WalkOrder& order, QuantizedMesh& mesh) {
       indices[faces[order.face[f]].first + (order.first_corner[f] + k) % coded.count] =
           order.vertex[mesh.indices[coded.first + k]];
   }
+  std::vector<uint16_t> face_values(mesh.face_values.size());
+  const auto n = static_cast<size_t>(mesh.face_components);
+  for (size_t i = 0; i < face_values.size(); ++i) face_values[order.face[i / n] * n + i % n] = mesh.face_values[i];
   mesh.vertices = std::move(vertices);
+  mesh.face_values = std::move(face_values);
   mesh.faces = std::move(faces);
   mesh.indices = std::move(indices);
 }
@@ -63,6 +69,8 @@ QuantizedMesh empty_mesh(const Header& header) {
   mesh.texcoord_bits = header.texcoord_bits;
   std::copy(header.texcoord_origin, header.texcoord_origin + 2, mesh.texcoord_origin);
   mesh.texcoord_step = header.texcoord_step;
+  mesh.face_bits = header.face_bits;
+  mesh.face_components = header.face_components;
   return mesh;
 }
 
@@ -167,6 +175,11 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
   for (uint32_t face = 0; face < points.n_faces(); ++face)
     mesh.faces.push_back({points.face_first[face], points.face_size(face), (*material)[face]});
   mesh.indices = std::move(seams->corner_vertex);
+  if (header.has(kFaceValues)) {
+    auto values = decode_face_values(stream.section[kFaceValues], points, header.face_components, header.face_bits);
+    if (!values) return at(values.failure(), stream.section_offset(kFaceValues));
+    mesh.face_values = std::move(*values);
+  }
   if (header.has(kOrder)) {
     auto order = decode_order(stream.section[kOrder], points, header.n_vertices());
     if (!order) return at(order.failure(), stream.section_offset(kOrder));

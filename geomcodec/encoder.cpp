@@ -4,6 +4,7 @@
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
 #include "geomcodec/container.h"
+#include "geomcodec/face_values.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/mesh_check.h"
@@ -63,6 +64,17 @@ Walked walk(const QuantizedMesh& mesh) {
   return walked;
 }
 
+std::vector<uint16_t> face_values_in_order(const QuantizedMesh& mesh, const WalkOrder& order) {
+  const auto n = static_cast<size_t>(mesh.face_components);
+  std::vector<uint16_t> values;
+  values.reserve(mesh.face_values.size());
+  if (n > 0)
+    for (const uint32_t face : order.face)
+      values.insert(values.end(), mesh.face_values.begin() + static_cast<ptrdiff_t>(face * n),
+                    mesh.face_values.begin() + static_cast<ptrdiff_t>((face + 1) * n));
+  return values;
+}
+
 // Of the points, then of the isolated vertices.
 std::vector<Position> positions_of(const Walked& walked) {
   const uint32_t n_used = walked.seams.n_vertices(), n_points = walked.points.n_vertices;
@@ -91,6 +103,8 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
   header.texcoord_bits = mesh.texcoord_bits;
   std::copy(mesh.texcoord_origin, mesh.texcoord_origin + 2, header.texcoord_origin);
   header.texcoord_step = mesh.texcoord_step;
+  header.face_bits = mesh.face_bits;
+  header.face_components = mesh.face_components;
   header.n_used_vertices = walked.seams.n_vertices();
   header.n_split_vertices = header.n_used_vertices - walked.points.n_vertices;
   header.n_isolated_vertices = static_cast<uint32_t>(mesh.vertices.size()) - header.n_used_vertices;
@@ -137,6 +151,9 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   sections[kSeams] = std::move(walked.seam_bytes);
   encode_vertices(header, walked, sections);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
+  if (header.has(kFaceValues))
+    sections[kFaceValues] = encode_face_values(walked.points, face_values_in_order(mesh, walked.order),
+                                               header.face_components, header.face_bits);
   if (header.has(kOrder)) sections[kOrder] = encode_order(walked.points, walked.order);
   for (const std::vector<uint8_t>& section : sections)
     if (section.size() > kMaxCount) return Failure{Error::bad_argument, 0, "mesh is too large for one stream"};
@@ -152,6 +169,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
              sections[kNormals].size(),
              sections[kTexcoords].size(),
              sections[kMaterials].size(),
+             sections[kFaceValues].size(),
              sections[kOrder].size()};
   return stream;
 }
@@ -167,6 +185,9 @@ QuantizedMesh reorder(const QuantizedMesh& mesh) {
   result.texcoord_bits = mesh.texcoord_bits;
   std::copy(mesh.texcoord_origin, mesh.texcoord_origin + 2, result.texcoord_origin);
   result.texcoord_step = mesh.texcoord_step;
+  result.face_bits = mesh.face_bits;
+  result.face_components = mesh.face_components;
+  result.face_values = face_values_in_order(mesh, walked.order);
   result.vertices = std::move(walked.vertices);
   for (uint32_t face = 0; face < walked.points.n_faces(); ++face)
     result.faces.push_back({walked.points.face_first[face], walked.points.face_size(face), walked.material[face]});

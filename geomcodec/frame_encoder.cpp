@@ -17,6 +17,9 @@ Result<void> check_pair(const QuantizedMesh& mesh, const QuantizedMesh& referenc
       mesh.texcoord_step != reference.texcoord_step ||
       !std::equal(mesh.texcoord_origin, mesh.texcoord_origin + 2, reference.texcoord_origin))
     return Failure{Error::bad_argument, 0, "frame and reference differ in the grids of normals or texture"};
+  if (mesh.face_bits != reference.face_bits || mesh.face_components != reference.face_components ||
+      mesh.face_values != reference.face_values)
+    return Failure{Error::bad_argument, 0, "frame and reference differ in the values of faces"};
   for (size_t f = 0; f < mesh.faces.size(); ++f) {
     const Face &one = mesh.faces[f], &other = reference.faces[f];
     const uint32_t* corners = mesh.indices.data() + one.first;

@@ -92,7 +92,7 @@ bool within_bounds(const FrameMotion& motion) {
 uint32_t reference_checksum(const QuantizedMesh& reference, const FrameMotion* motion) {
   Summed sum;
   sum.u32(static_cast<uint32_t>(reference.position_bits) | static_cast<uint32_t>(reference.normal_bits) << 8 |
-          static_cast<uint32_t>(reference.texcoord_bits) << 16);
+          static_cast<uint32_t>(reference.texcoord_bits) << 16 | static_cast<uint32_t>(reference.face_bits) << 24);
   for (const QuantizedVertex& vertex : reference.vertices) {
     for (const uint16_t coordinate : vertex.position) sum.u16(coordinate);
     sum.u32(uint32_t{vertex.color[0]} | uint32_t{vertex.color[1]} << 8 | uint32_t{vertex.color[2]} << 16 |
@@ -105,6 +105,7 @@ uint32_t reference_checksum(const QuantizedMesh& reference, const FrameMotion* m
     for (uint32_t k = 0; k < face.count; ++k) sum.u32(reference.indices[face.first + k]);
     sum.u32(face.material);
   }
+  for (const uint16_t value : reference.face_values) sum.u16(value);
   if (motion != nullptr)
     for (const auto& row : motion->row)
       for (const int64_t entry : row) {

@@ -43,6 +43,11 @@ struct QuantizedMesh {
   int texcoord_bits = 0;  // 1..16; 0: no texture coordinates
   float texcoord_origin[2] = {0, 0};
   float texcoord_step = 1;
+  // Values of faces, such as colors: face_components of face 0, those of face 1, ... Data of corners is that of the
+  // vertices: those that share a position are coded once.
+  int face_bits = 0;                  // 1..16; 0: no values
+  int face_components = 0;            // 1..4; 0 without values
+  std::vector<uint16_t> face_values;  // faces.size() * face_components, each below 2^face_bits
 };
 
 // The only lossy step: rounds to the nearest point of a cubic grid (one step for the three axes: the longest side of
@@ -82,11 +87,12 @@ struct EncodeOptions {
 struct EncodedSize {
   uint64_t header_bytes = 0, connectivity_bytes = 0;
   uint64_t seam_bytes = 0;  // which corners at a position share a vertex
-  uint64_t position_bytes = 0, color_bytes = 0, normal_bytes = 0, texcoord_bytes = 0, material_bytes = 0;
+  uint64_t position_bytes = 0, color_bytes = 0, normal_bytes = 0, texcoord_bytes = 0, material_bytes = 0,
+           face_value_bytes = 0;
   uint64_t order_bytes = 0;  // the permutations that keep_order adds
   uint64_t total_bytes() const {
     return header_bytes + connectivity_bytes + seam_bytes + position_bytes + color_bytes + normal_bytes +
-           texcoord_bytes + material_bytes + order_bytes;
+           texcoord_bytes + material_bytes + face_value_bytes + order_bytes;
   }
 };
 
@@ -96,8 +102,8 @@ inline double levoy95_estimated_bytes(uint64_t n_polygons) {
 }
 
 // Positions that several vertices share are coded once. Fails with bad_argument: bits out of range, a coordinate above
-// its grid, an attribute that the mesh says it has not, a face that base/mesh.h's
-// validate() refuses, more than 2^31 - 1 vertices, faces or corners.
+// its grid, an attribute that the mesh says it has not, values of faces that are not as many as it says, a face that
+// base/mesh.h's validate() refuses, more than 2^31 - 1 vertices, faces or corners.
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options = {},
                                     EncodedSize* size = nullptr);
 
@@ -121,6 +127,7 @@ struct StreamInfo {
   float origin[3] = {0, 0, 0};
   float step[3] = {1, 1, 1};
   int normal_bits = 0, texcoord_bits = 0;  // 0: none
+  int face_bits = 0, face_components = 0;  // 0: faces have no values
   uint32_t n_points = 0;                   // distinct positions of the vertices that faces use
   bool constant_color = false;             // all vertices share one color
   bool keeps_order = false;

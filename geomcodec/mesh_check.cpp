@@ -29,6 +29,18 @@ Result<void> check_vertices(const QuantizedMesh& mesh) {
   return {};
 }
 
+Result<void> check_face_values(const QuantizedMesh& mesh) {
+  const bool none = mesh.face_bits == 0 && mesh.face_components == 0;
+  if (!none && (mesh.face_bits < 1 || mesh.face_bits > 16 || mesh.face_components < 1 || mesh.face_components > 4))
+    return Failure{Error::bad_argument, 0, "values of faces are not 1..4 of 1..16 bits"};
+  if (mesh.face_values.size() != mesh.faces.size() * static_cast<size_t>(mesh.face_components))
+    return Failure{Error::bad_argument, 0, "values of faces are not as many as the mesh says"};
+  for (size_t i = 0; i < mesh.face_values.size(); ++i)
+    if (mesh.face_values[i] >> mesh.face_bits != 0)
+      return Failure{Error::bad_argument, i, "value of a face above its bits"};
+  return {};
+}
+
 }  // namespace
 
 Result<void> check_mesh(const QuantizedMesh& mesh) {
@@ -50,6 +62,7 @@ Result<void> check_mesh(const QuantizedMesh& mesh) {
   }
   if (mesh.vertices.size() > kMaxCount || n_corners > kMaxCount)
     return Failure{Error::bad_argument, 0, "mesh has more than 2^31 - 1 vertices or corners"};
+  PAC_CHECK(check_face_values(mesh));
   return check_vertices(mesh);
 }
 

@@ -46,8 +46,8 @@ TEST_CASE("streams are the same bytes on every platform and compiler") {
       for (const uint8_t byte : from_trained) trained.add(byte);
     }
   }
-  REQUIRE(fnv.hash() == 0x2d1b6b0bb5b5ad1eu);
-  REQUIRE(trained.hash() == 0x147978161efd82c5u);
+  REQUIRE(fnv.hash() == 0x60f7ba69cb41d081u);
+  REQUIRE(trained.hash() == 0xca64eb0ffe5c7e54u);
 }
 
 TEST_CASE("streams whose models start untrained are still written and read") {

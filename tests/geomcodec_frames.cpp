@@ -212,6 +212,17 @@ TEST_CASE("encode_frame refuses meshes that do not fit together") {
   frame = reference;
   frame.faces[2].material = 9;
   REQUIRE(encode_frame(frame, reference).failure().error == Error::bad_argument);
+  frame = reference;
+  frame.face_bits = frame.face_components = 1;
+  frame.face_values.assign(frame.faces.size(), 1);
+  REQUIRE(encode_frame(frame, reference).failure().error == Error::bad_argument);
+  QuantizedMesh other = frame;
+  other.face_values[0] = 0;
+  REQUIRE(encode_frame(frame, other).failure().error == Error::bad_argument);
+  const auto still = encode_frame(frame, frame);
+  REQUIRE(still.ok());
+  REQUIRE(pac::test::same(decode_frame(*still, frame).value(), frame));
+  REQUIRE(decode_frame(*still, other).failure().error == Error::corrupt);
   FrameMotion far;
   far.row[0][0] = int64_t{1} << 50;
   REQUIRE(encode_frame(reference, reference, {&far, false}).failure().error == Error::bad_argument);

@@ -141,13 +141,21 @@ TEST_CASE("each header field at its limit and one past it") {
   padded[6] = 0x80;  // the number 0 in two bytes
   Bytes normals = header(4 + 16, 16, {2, 0, 0, 0, 0, 0, 0}), texture = header(4 + 32, 16, {1, 0, 0, 0, 0, 0, 0, 0x80});
   REQUIRE(decode(normals).ok());
+  REQUIRE(decode(header(128 + 4, 16, {16, 4, 0, 0, 0, 0, 0, 0})).ok());
   normals[6] = 17;
   texture[6] = 0;
   const uint64_t top = 0x7FFFFFFF;
   const Case cases[] = {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
-      {"flags", header(128 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::unsupported, "stream uses features that are unknown"},
+      {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+       "values of faces are not 1..4 of 1..16 bits"},
+      {"values of faces of 0 bits", header(128 + 4, 16, {0, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+       "values of faces are not 1..4 of 1..16 bits"},
+      {"five values a face", header(128 + 4, 16, {16, 5, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+       "values of faces are not 1..4 of 1..16 bits"},
+      {"no values a face", header(128 + 4, 16, {16, 0, 0, 0, 0, 0, 0, 0}), Error::corrupt,
+       "values of faces are not 1..4 of 1..16 bits"},
       {"trained for nothing", header(64 + 4, 16, {0, 0, 0, 0, 0, 0}), Error::corrupt,
        "models are trained for no vertex"},
       {"two grids", header(12, 16, {0, 0, 0, 0, 0, 0}), Error::corrupt, "flags contradict one another"},

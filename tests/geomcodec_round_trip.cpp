@@ -19,7 +19,9 @@ using pac::test::same;
 // Each face as its corners' vertex *values*, rotated to the smallest form: what reorder() must keep.
 std::vector<std::vector<uint32_t>> face_set(const QuantizedMesh& mesh) {
   std::vector<std::vector<uint32_t>> faces;
-  for (const pac::Face& face : mesh.faces) {
+  const auto n_values = static_cast<size_t>(mesh.face_components);
+  for (size_t f = 0; f < mesh.faces.size(); ++f) {
+    const pac::Face& face = mesh.faces[f];
     std::vector<uint32_t> corners, best;
     for (uint32_t k = 0; k < face.count; ++k) {
       const auto& vertex = mesh.vertices[mesh.indices[face.first + k]];
@@ -31,6 +33,7 @@ std::vector<std::vector<uint32_t>> face_set(const QuantizedMesh& mesh) {
       std::rotate(corners.begin(), corners.begin() + 2, corners.end());
     }
     best.push_back(face.material);
+    for (size_t i = 0; i < n_values; ++i) best.push_back(mesh.face_values[f * n_values + i]);
     faces.push_back(best);
   }
   std::sort(faces.begin(), faces.end());
@@ -61,6 +64,40 @@ TEST_CASE("without it every mesh comes back as reorder() says, which keeps verti
     REQUIRE((entry.mesh.faces.size() > 2000 || face_set(expected) == face_set(entry.mesh)));
     REQUIRE(same(reorder(expected), expected));
   }
+}
+
+TEST_CASE("values of faces must be as many and as small as the mesh says") {
+  QuantizedMesh mesh = pac::test::wave_mesh(3, 2, false);
+  mesh.face_bits = 8;
+  mesh.face_components = 2;
+  mesh.face_values.assign(12, 255);
+  REQUIRE(encode(mesh).ok());
+  QuantizedMesh bad = mesh;
+  bad.face_values.pop_back();
+  REQUIRE(encode(bad).failure().error == pac::Error::bad_argument);
+  bad = mesh;
+  bad.face_values[3] = 256;
+  REQUIRE(encode(bad).failure().byte_offset == 3);
+  bad = mesh;
+  bad.face_components = 0;
+  REQUIRE(encode(bad).failure().error == pac::Error::bad_argument);
+  bad = mesh;
+  bad.face_bits = 17;
+  REQUIRE(encode(bad).failure().error == pac::Error::bad_argument);
+}
+
+TEST_CASE("a color per face that changes with the surface takes less than a quarter of its bytes") {
+  QuantizedMesh mesh = pac::test::wave_mesh(40, 30, true);
+  mesh.face_bits = 8;
+  mesh.face_components = 3;
+  for (const pac::Face& face : mesh.faces)
+    for (const int shift : {8, 7, 9})
+      mesh.face_values.push_back(
+          static_cast<uint16_t>(mesh.vertices[mesh.indices[face.first]].position[2] >> shift & 255));
+  EncodedSize size;
+  REQUIRE(encode(mesh, {}, &size).ok());
+  REQUIRE(size.face_value_bytes > 0);
+  REQUIRE(4 * size.face_value_bytes < mesh.face_values.size());
 }
 
 TEST_CASE("the parts add up to the stream, and read_info tells them without decoding") {

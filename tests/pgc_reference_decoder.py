@@ -225,7 +225,6 @@ class Header(Fields):  # section 2
     def __init__(self, b):
         assert b[:3] == b"PGC" and b[3] == 2
         self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
-        assert self.flags < 128
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
         if not self.flags & 4:
@@ -235,6 +234,7 @@ class Header(Fields):  # section 2
         self.texcoord_bits = self.byte() if self.flags & 32 else 0
         if self.texcoord_bits:
             self.floats(3)
+        self.face_bits, self.face_components = (self.byte(), self.byte()) if self.flags & 128 else (0, 0)
         self.used, self.split, self.isolated, self.faces = (self.varint() for _ in range(4))
         self.points, self.vertices = self.used - self.split, self.used + self.isolated
         extra = self.varint()
@@ -246,7 +246,8 @@ class Header(Fields):  # section 2
             self.at += 4
         some = self.vertices > 0
         present = [self.faces > 0, self.split > 0, some, some and not self.color, some and self.normal_bits > 0,
-                   some and self.texcoord_bits > 0, self.highest > 0, some and self.flags & 1 > 0]
+                   some and self.texcoord_bits > 0, self.highest > 0, self.faces > 0 and self.face_bits > 0,
+                   some and self.flags & 1 > 0]
         sizes = [self.varint() if x else 0 for x in present]
         self.take_sections(sizes)
 
@@ -888,8 +889,39 @@ def materials(header, mesh):  # section 10
     return material
 
 
+def face_values(header, mesh):  # section 10
+    bits, n = header.face_bits, header.face_components
+    if n == 0 or header.faces == 0:
+        return [()] * header.faces
+    d, values, classes, same = Decoder(header.sections[7]), [], [], 1
+    mask, half = (1 << bits) - 1, 1 << bits - 1
+    for f, (first, size) in enumerate(mesh.faces):
+        twins = [mesh.twin[c] for c in range(first, first + size)]
+        near = [mesh.face_of[t] for t in twins if t is not None and mesh.face_of[t] < f][:12]
+        expected = values[near[0]] if near else values[f - 1] if f else [0] * n
+        agreement = len(near) if len(near) < 2 else 2 if all(values[g] == expected for g in near) else 3
+        same = d.bit(("same", same, agreement))
+        classes.append([0] * n)
+        values.append(list(expected))
+        if same:
+            continue
+        basis, other, before = (0, 3, 4, 5)[min(3, len(near))], 0, 0
+        for c in range(n):
+            prediction, scale = expected[c], 2 * classes[f - 1][c] if f else 0
+            if near:
+                prediction = min(mean(sum(values[g][c] for g in near), len(near)), mask)
+                scale = mean(sum(classes[g][c] for g in near), len(near), 1)
+            sign = 0 if before == 0 else 1 if before > 0 else 2
+            before = d.residual((c, "scale", basis, scale), (c, "other", basis, other), (c, "detail", sign))
+            values[f][c] = prediction + before & mask
+            classes[f][c] = abs(before).bit_length()
+            other = max(other, classes[f][c])
+    d.finish()
+    return values
+
+
 def restore_order(header, vertices, faces):  # section 11
-    d = Decoder(header.sections[7])
+    d = Decoder(header.sections[8])
 
     def permutation(n, name):
         previous, context, result = -1, 33, []
@@ -906,10 +938,10 @@ def restore_order(header, vertices, faces):  # section 11
     old_vertices, old_faces = [None] * len(vertices), [None] * len(faces)
     for v, number in enumerate(vertex_number):
         old_vertices[number] = vertices[v]
-    for f, (corners, material) in enumerate(faces):
+    for f, (corners, material, values) in enumerate(faces):
         first, n = d.number("first"), len(corners)
         old = [vertex_number[corners[(k - first) % n]] for k in range(n)]
-        old_faces[face_number[f]] = (old, material)
+        old_faces[face_number[f]] = (old, material, values)
     d.finish()
     return old_vertices, old_faces
 
@@ -922,7 +954,7 @@ def decode(data):
     if header.vertices:
         vertices = Attributes(header, mesh, seams, Positions(header, mesh)).result()
     corner_lists = [seams.corner_vertex[first : first + n] for first, n in mesh.faces]
-    faces = list(zip(corner_lists, materials(header, mesh)))
+    faces = list(zip(corner_lists, materials(header, mesh), face_values(header, mesh)))
     return restore_order(header, vertices, faces) if header.flags & 1 and vertices else (vertices, faces)
 
 
@@ -931,9 +963,11 @@ def fnv(vertices, faces):
     for fields in vertices:
         for x in [x for field in fields for x in field]:
             h = ((h ^ x) * 1099511628211) & M64
-    for corners, material in faces:
+    for corners, material, _ in faces:
         for x in list(corners) + [material]:
             h = ((h ^ x) * 1099511628211) & M64
+    for x in [x for _, _, values in faces for x in values]:
+        h = ((h ^ x) * 1099511628211) & M64
     return h
 
 

@@ -37,11 +37,13 @@ class FrameHeader(pgc.Fields):
 
 
 def reference_checksum(header, vertices, faces, motion):
-    out = [struct.pack("<I", header.bits | header.normal_bits << 8 | header.texcoord_bits << 16)]
+    out = [struct.pack("<I", header.bits | header.normal_bits << 8 | header.texcoord_bits << 16 | header.face_bits << 24)]
     for position, color, normal, texcoord in vertices:
         out.append(struct.pack("<3H4B2H2H", *position, *color, *normal, *texcoord))
-    for corners, material in faces:
+    for corners, material, _ in faces:
         out.append(struct.pack("<%dI" % (len(corners) + 2), len(corners), *corners, material))
+    for _, _, values in faces:
+        out.append(struct.pack("<%dH" % len(values), *values))
     if motion:
         out.append(struct.pack("<16q", *motion))
     return zlib.crc32(b"".join(out))
@@ -104,7 +106,7 @@ def decode_frame(reference, data, callers_motion):
     assert frame.vertices == len(vertices)
     assert frame.reference == reference_checksum(header, vertices, faces, motion if frame.kind == 2 else None)
     neighbors = [[] for _ in vertices]
-    for corners, _ in faces:
+    for corners, _, _ in faces:
         for k, v in enumerate(corners):
             for w in (corners[(k + 1) % len(corners)], corners[k - 1]):
                 if w < v and len(neighbors[v]) < 12:

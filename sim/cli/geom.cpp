@@ -42,6 +42,7 @@ void json_sizes(sim::JsonWriter& json, const EncodedSize& size, const Counts& co
   json.field("normals", size.normal_bytes);
   json.field("texcoords", size.texcoord_bytes);
   json.field("materials", size.material_bytes);
+  json.field("face_values", size.face_value_bytes);
   json.field("order", size.order_bytes);
   json.end_object();
 }
@@ -55,10 +56,15 @@ void print_sizes(std::FILE* out, const EncodedSize& size, const Counts& counts) 
   const struct {
     const char* name;
     uint64_t bytes;
-  } parts[] = {{"header", size.header_bytes},    {"connectivity", size.connectivity_bytes},
-               {"seams", size.seam_bytes},       {"positions", size.position_bytes},
-               {"colors", size.color_bytes},     {"normals", size.normal_bytes},
-               {"texture", size.texcoord_bytes}, {"materials", size.material_bytes},
+  } parts[] = {{"header", size.header_bytes},
+               {"connectivity", size.connectivity_bytes},
+               {"seams", size.seam_bytes},
+               {"positions", size.position_bytes},
+               {"colors", size.color_bytes},
+               {"normals", size.normal_bytes},
+               {"texture", size.texcoord_bytes},
+               {"materials", size.material_bytes},
+               {"face values", size.face_value_bytes},
                {"order", size.order_bytes}};
   for (const auto& part : parts)
     if (part.bytes > 0) std::fprintf(out, "  %-13s %12s\n", part.name, grouped(part.bytes).c_str());

@@ -228,6 +228,22 @@ QuantizedMesh with_attributes(QuantizedMesh mesh, int normal_bits, int texcoord_
   return mesh;
 }
 
+// Values of faces: some smooth, some that only change here and there, some anywhere.
+QuantizedMesh with_face_values(QuantizedMesh mesh, int components, int bits) {
+  Random random(31);
+  mesh.face_bits = bits;
+  mesh.face_components = components;
+  const uint32_t mask = (1u << bits) - 1;
+  for (size_t f = 0; f < mesh.faces.size(); ++f)
+    for (int c = 0; c < components; ++c)
+      mesh.face_values.push_back(static_cast<uint16_t>((c == 0   ? f / 64 * 1001
+                                                        : c == 1 ? f * 3
+                                                        : c == 2 ? random.below(65536)
+                                                                 : f + random.below(5)) &
+                                                       mask));
+  return mesh;
+}
+
 QuantizedMesh strip(uint32_t n_vertices) {
   QuantizedMesh mesh;
   for (uint32_t i = 0; i < n_vertices; ++i) add_vertex(mesh, i & 0xFFFF, (i % 2) * 50, i >> 12);
@@ -253,7 +269,8 @@ bool same(const QuantizedMesh& one, const QuantizedMesh& other) {
          std::equal(one.texcoord_origin, one.texcoord_origin + 2, other.texcoord_origin) &&
          one.texcoord_step == other.texcoord_step && one.vertices == other.vertices && one.indices == other.indices &&
          one.position_bits == other.position_bits && std::equal(one.origin, one.origin + 3, other.origin) &&
-         std::equal(one.step, one.step + 3, other.step) &&
+         std::equal(one.step, one.step + 3, other.step) && one.face_bits == other.face_bits &&
+         one.face_components == other.face_components && one.face_values == other.face_values &&
          std::equal(one.faces.begin(), one.faces.end(), other.faces.begin(), other.faces.end(),
                     [](const Face& a, const Face& b) {
                       return a.first == b.first && a.count == b.count && a.material == b.material;
@@ -346,6 +363,9 @@ std::vector<NamedMesh> mesh_zoo() {
   add("coarsest normals and texture", with_attributes(random_soup(80, 100, 5), 2, 1));
   add("normals of lone vertices", with_attributes(with_isolated(wave_mesh(4, 4, true), 9), 8, 0));
   add("texture on degenerate faces", with_attributes(degenerate(), 0, 14));
+  add("values of triangles", with_face_values(wave_mesh(14, 9, true), 4, 8));
+  add("values of polygons", with_face_values(with_seams(random_soup(60, 120, 9), 4), 3, 16));
+  add("one bit a face", with_face_values(wave_mesh(6, 5, false), 1, 1));
   add("equal parts in rows", wave_mesh(3, 400, false));
   add("65535 vertices", strip(65535));
   add("65536 vertices", strip(65536));

@@ -18,6 +18,7 @@ std::string summary(const geomcodec::QuantizedMesh& mesh) {
     for (uint32_t k = 0; k < face.count; ++k) fnv.add(mesh.indices[face.first + k]);
     fnv.add(face.material);
   }
+  for (const uint16_t value : mesh.face_values) fnv.add(value);
   char text[64];
   std::snprintf(text, sizeof text, "%zu %zu %016llx\n", mesh.vertices.size(), mesh.faces.size(),
                 static_cast<unsigned long long>(fnv.hash()));
