@@ -158,7 +158,7 @@ std::string arm_costs(std::span<const ExperimentRow> rows) {
 std::string costs(std::span<const ExperimentRow> rows) {
   return "## What it costs\n\nCPU time of one core a frame, mean over the rates. Resident bytes come before the first "
          "frame and are in no curve. Our arms code effort `best`; \"decoder\" is all that comes after L: unpacking, "
-         "prediction, MPEG-1, sum. Stage by stage at 1280 x 720: `bench/peers/client_cost`.\n\n" +
+         "prediction, MPEG-1, sum. Stage by stage at 1280 x 720: `build/release/bench/peers/client_cost`.\n\n" +
          scene_costs(rows) +
          "All codecs, mean over all scenes and rates. Other people's times hold the start of their programs and "
          "reading "
