@@ -111,18 +111,6 @@ inline void add_eight(const uint8_t* base, const int16_t* carried, uint8_t* out)
   vst1_u8(out, vqmovun_s16(vaddq_s16(wide, vrshrq_n_s16(vld1q_s16(carried), kCarriedBits))));
 }
 
-void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
-  size_t i = 0;
-  for (; i + 8 <= n; i += 8) add_eight(base + i, carried + i, out + i);
-  if (i == n) return;
-  uint8_t last_base[8] = {}, last_out[8];
-  int16_t last_carried[8] = {};
-  __builtin_memcpy(last_base, base + i, n - i);
-  __builtin_memcpy(last_carried, carried + i, (n - i) * sizeof(int16_t));
-  add_eight(last_base, last_carried, last_out);
-  __builtin_memcpy(out + i, last_out, n - i);
-}
-
 // (a x + b y + 32768) >> 16; whole numbers of x and y are added outside, see composite_eight().
 inline int16x8_t rounded_sum(int16x8_t x, int16_t a, int16x8_t y, int16_t b) {
   const int32x4_t low = vmlal_n_s16(vmull_n_s16(vget_low_s16(x), a), vget_low_s16(y), b);
@@ -145,20 +133,7 @@ inline void composite_eight(const uint8_t* low, const int16_t* difference, const
   vst3_u8(rgb, to);
 }
 
-void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
-                          uint8_t* rgb) {
-  size_t i = 0;
-  for (; i + 8 <= n; i += 8) composite_eight(low + 3 * i, d + i, u + i, v + i, rgb + 3 * i);
-  if (i == n) return;
-  uint8_t last_low[24] = {}, last_rgb[24];
-  int16_t last[3][8] = {};
-  __builtin_memcpy(last_low, low + 3 * i, 3 * (n - i));
-  __builtin_memcpy(last[0], d + i, (n - i) * sizeof(int16_t));
-  __builtin_memcpy(last[1], u + i, (n - i) * sizeof(int16_t));
-  __builtin_memcpy(last[2], v + i, (n - i) * sizeof(int16_t));
-  composite_eight(last_low, last[0], last[1], last[2], last_rgb);
-  __builtin_memcpy(rgb + 3 * i, last_rgb, 3 * (n - i));
-}
+#include "base/kernels/warp_rows_simd.inc"
 
 }  // namespace
 

@@ -130,21 +130,10 @@ inline __m128i whole(__m128i carried) {
   return _mm_srai_epi16(_mm_add_epi16(carried, _mm_set1_epi16(1 << (kCarriedBits - 1))), kCarriedBits);
 }
 
-void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
-  const auto eight = [](const uint8_t* from, const int16_t* added) {
-    const __m128i wide = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
-    const __m128i sum = _mm_add_epi16(wide, whole(load(added)));
-    return _mm_packus_epi16(sum, sum);
-  };
-  size_t i = 0;
-  for (; i + 8 <= n; i += 8) _mm_storel_epi64(reinterpret_cast<__m128i*>(out + i), eight(base + i, carried + i));
-  if (i == n) return;
-  uint8_t last_base[8] = {}, last_out[8];
-  int16_t last_carried[8] = {};
-  __builtin_memcpy(last_base, base + i, n - i);
-  __builtin_memcpy(last_carried, carried + i, (n - i) * sizeof(int16_t));
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(last_out), eight(last_base, last_carried));
-  __builtin_memcpy(out + i, last_out, n - i);
+inline void add_eight(const uint8_t* base, const int16_t* carried, uint8_t* out) {
+  const __m128i wide = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(base)));
+  const __m128i sum = _mm_add_epi16(wide, whole(load(carried)));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(out), _mm_packus_epi16(sum, sum));
 }
 
 // (a x + b y + 32768) >> 16 of 16-bit lanes, a and b within 16 bits.
@@ -190,20 +179,7 @@ inline void composite_eight(const uint8_t* low, const int16_t* difference, const
                          _mm_setr_epi8(-1, 5, -1, -1, 6, -1, -1, 7, -1, -1, -1, -1, -1, -1, -1, -1)));
 }
 
-void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
-                          uint8_t* rgb) {
-  size_t i = 0;
-  for (; i + 8 <= n; i += 8) composite_eight(low + 3 * i, d + i, u + i, v + i, rgb + 3 * i);
-  if (i == n) return;
-  uint8_t last_low[24] = {}, last_rgb[24];
-  int16_t last[3][8] = {};
-  __builtin_memcpy(last_low, low + 3 * i, 3 * (n - i));
-  __builtin_memcpy(last[0], d + i, (n - i) * sizeof(int16_t));
-  __builtin_memcpy(last[1], u + i, (n - i) * sizeof(int16_t));
-  __builtin_memcpy(last[2], v + i, (n - i) * sizeof(int16_t));
-  composite_eight(last_low, last[0], last[1], last[2], last_rgb);
-  __builtin_memcpy(rgb + 3 * i, last_rgb, 3 * (n - i));
-}
+#include "base/kernels/warp_rows_simd.inc"
 
 }  // namespace
 
