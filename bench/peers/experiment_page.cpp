@@ -10,7 +10,6 @@ namespace pac::bench {
 namespace {
 
 constexpr size_t kVoices = 3;  // metrics of the verdict
-constexpr size_t kPsnr = 3;    // of kScores
 
 std::vector<std::string> splits_of(std::span<const ExperimentRow> rows) {
   std::vector<std::string> splits;

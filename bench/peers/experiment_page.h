@@ -11,6 +11,8 @@
 
 namespace pac::bench {
 
+constexpr size_t kPsnr = 3;  // of kScores
+
 struct ExperimentGroup {
   std::string scene, split;
 

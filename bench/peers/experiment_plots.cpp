@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bench/peers/experiment_page.h"
 #include "sim/report_plot.h"
@@ -10,19 +9,10 @@ namespace pac::bench {
 
 namespace {
 
-constexpr size_t kPsnr = 3;  // of kScores
-
 std::string slug(std::string name) {
   for (char& c : name)
     if ((c < 'a' || c > 'z') && (c < '0' || c > '9') && (c < 'A' || c > 'Z')) c = '-';
   return name;
-}
-
-template <class... Numbers>
-std::string text(const char* pattern, Numbers... numbers) {
-  char buffer[128];
-  std::snprintf(buffer, sizeof buffer, pattern, numbers...);
-  return buffer;
 }
 
 // Below this a picture is a ruin, and curves that differ there say nothing.
