@@ -35,6 +35,14 @@ set(pac_flags_sse41 -msse4.1)
 set(pac_flags_avx2 -mavx2)  # never -mfma
 set(pac_flags_neon "")
 
+# pac_precompile(TARGET [header...]): see PAC_PRECOMPILE. Files of an instruction set have flags of their own and stay out.
+function(pac_precompile target)
+  if(PAC_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <bit> <cmath> <cstdint> <cstring> <functional> <memory>
+                              <optional> <span> <string> <string_view> <utility> <vector> ${ARGN})
+  endif()
+endfunction()
+
 # pac_library(NAME DIRS dir... [DEPENDS name...] [GLM]): one static library pac_NAME, alias pac::NAME, from the .cpp files
 # of its folders. A file *_ISA.cpp is compiled only where the ISA exists, with that ISA's flags.
 function(pac_library name)
@@ -49,7 +57,7 @@ function(pac_library name)
     list(FILTER isa_sources INCLUDE REGEX "_${isa}\\.cpp$")
     if(isa IN_LIST pac_isas)
       if(isa_sources)
-        set_source_files_properties(${isa_sources} PROPERTIES COMPILE_OPTIONS "${pac_flags_${isa}}")
+        set_source_files_properties(${isa_sources} PROPERTIES COMPILE_OPTIONS "${pac_flags_${isa}}" SKIP_PRECOMPILE_HEADERS ON)
       endif()
     else()
       list(REMOVE_ITEM sources ${isa_sources})
@@ -66,6 +74,7 @@ function(pac_library name)
       target_compile_definitions(pac_${name} PRIVATE PAC_HAVE_${upper})
     endforeach()
     target_compile_definitions(pac_${name} PRIVATE PAC_THREADS=$<BOOL:${PAC_THREADS}>)
+    pac_precompile(pac_${name})
   else()
     add_library(pac_${name} INTERFACE)
     set(scope INTERFACE)

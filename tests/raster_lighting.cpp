@@ -227,7 +227,7 @@ TEST_CASE("full lighting gives the same bits on every instruction set and thread
     for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
       if (kernels_for(isa) == nullptr) continue;
       options.isa = isa;
-      for (const int threads : {1, 2, 7}) {
+      for (const int threads : {1, 7}) {
         options.threads = threads;
         CHECK(hash() == expected);
       }
@@ -277,8 +277,9 @@ TEST_CASE(
     for (const bool cull : {false, true}) {
       quality.cull_back_faces = cull;
       const Camera camera = test_scenes::pin_camera(1.0f);
-      CHECK(hash_pixels(draw(shared, camera, quality).view()) == hash_pixels(draw(split, camera, quality).view()));
-      CHECK(hash_pixels(draw(shared, camera, quality).view()) == hash_pixels(draw(negated, camera, quality).view()));
+      const uint64_t expected = hash_pixels(draw(shared, camera, quality).view());
+      CHECK(hash_pixels(draw(split, camera, quality).view()) == expected);
+      CHECK(hash_pixels(draw(negated, camera, quality).view()) == expected);
     }
   }
 }
