@@ -1,7 +1,6 @@
 #include "mpeg1/trellis.h"
 
 #include <bit>
-#include <cstring>
 
 #include "base/kernels/block_kernels.h"
 #include "mpeg1/vlc_tables.h"
@@ -27,85 +26,101 @@ int coefficient(const BlockToQuantize& block, int position) {
 }
 
 // dct_coeff_first spends a bit less on run 0, level 1 [table B.5c].
-int token_bits(const BlockToQuantize& block, int run, int level, bool is_first) {
-  return run_level_bits(run, level) - (is_first && !block.is_intra && run == 0 && level == 1 ? 1 : 0);
+int saved_at_first(const BlockToQuantize& block, int position, int level) {
+  return !block.is_intra && position == block.first_position && level == 1 ? 1 : 0;
 }
 
-// A way to code everything up to a position that ends with a level there.
+// A way to code everything up to a position that ends with a level there, for going back along it.
 struct Path {
-  int64_t cost;  // minus the energy of positions up to and with this one
-  int previous;  // index of the path before, -1: none
+  int16_t previous;  // index of the path before; 0: nothing was coded before
   int16_t position, level;
-  int bits;
-  int64_t distortion;  // less that energy, too
+  int16_t bits;  // of all its codes: at most 64 * 28
 };
+
+// A path that later levels may follow. Its distortion is cost - lambda * bits.
+struct LivePath {
+  int64_t cost;  // minus the energy of positions up to and with this one
+  int position;
+  int path;
+};
+
+// The cheapest of the paths that end at a position.
+struct Step {
+  int64_t cost = INT64_MAX;
+  int from = 0, level = 0, bits = 0;
+};
+
+// Coding |level| at the position, after the cheapest of the live paths; `gained` is its distortion less that of zero.
+inline void take_cheapest(const BlockToQuantize& block, const LivePath* live, int n_live, int position, int level,
+                          int64_t gained, Step& best) {
+  const uint8_t* bits_of_run = bits_of_level(level).data();
+  const int saved = saved_at_first(block, position, level);
+  for (int i = 0; i < n_live; ++i) {
+    const int bits = bits_of_run[position - live[i].position - 1] - saved;
+    const int64_t cost = live[i].cost + gained + block.lambda * bits;
+    if (cost < best.cost) best = {cost, i, level, bits};
+  }
+}
 
 }  // namespace
 
+// |c| <= 16384: eight squares fit 32 bits.
 int64_t energy(const BlockToQuantize& block) {
-  int64_t sum = 0;
-  for (int i = 0; i < 64; ++i) sum += squared(block.dct[i]);
-  return block.first_position == 0 ? sum : sum - squared(block.dct[0]);
+  uint32_t sums[8] = {};
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) {
+      const int c = block.dct[8 * y + x];
+      sums[x] += static_cast<uint32_t>(c * c);
+    }
+  int64_t sum = block.first_position == 0 ? 0 : -squared(block.dct[0]);
+  for (const uint32_t part : sums) sum += part;
+  return sum;
 }
 
 BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
-  const int64_t total_energy = energy(block);
   Path paths[65];
-  int live[65], n_live = 0, n_paths = 0;
-  // Paths that a later one beats are dropped: a longer run never has a shorter code worth speaking of.
-  const int start = block.first_position - 1;
-  paths[n_paths++] = {0, -1, static_cast<int16_t>(start), 0, 0, 0};
-  live[n_live++] = 0;
+  // Costs grow from path to path: one that a later one beats is dropped, as a longer run never has a shorter code
+  // worth speaking of.
+  LivePath live[65];
+  int n_paths = 0, n_live = 0;
+  paths[n_paths++] = {0, -1, 0, 0};
+  live[n_live++] = {0, block.first_position - 1, 0};
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
     const int c = coefficient(block, position), rounded = magnitude_of(levels[position]);
-    Path best{INT64_MAX, -1, static_cast<int16_t>(position), 0, 0, 0};
+    Step best;
     for (int level = rounded; level >= 1 && level >= rounded - 1; --level) {
-      const int reconstruction = reconstruct(block, level, position);
-      if (reconstruction == 0) continue;  // decoders disagree about it
-      const int64_t gained = squared(c - 8 * int64_t{reconstruction}) - squared(c);
-      for (int i = 0; i < n_live; ++i) {
-        const Path& from = paths[live[i]];
-        const int bits = token_bits(block, position - from.position - 1, level, from.previous < 0 && live[i] == 0);
-        const int64_t cost = from.cost + gained + block.lambda * bits;
-        if (cost >= best.cost) continue;
-        best = {cost,
-                live[i],
-                static_cast<int16_t>(position),
-                static_cast<int16_t>(level),
-                from.bits + bits,
-                from.distortion + gained};
-      }
+      const int r = 8 * reconstruct(block, level, position);
+      if (r == 0) continue;                                                        // decoders disagree about it
+      take_cheapest(block, live, n_live, position, level, r * (r - 2 * c), best);  // (c - r)^2 - c^2
     }
-    if (best.previous < 0) continue;
-    while (n_live > 0 && paths[live[n_live - 1]].cost >= best.cost) --n_live;
-    if (n_live > 0 && best.cost > paths[live[n_live - 1]].cost + 24 * block.lambda) continue;
-    paths[n_paths] = best;
-    live[n_live++] = n_paths++;
+    if (best.level == 0) continue;
+    const int previous = live[best.from].path;
+    while (n_live > 0 && live[n_live - 1].cost >= best.cost) --n_live;
+    if (n_live > 0 && best.cost > live[n_live - 1].cost + 24 * block.lambda) continue;
+    live[n_live++] = {best.cost, position, n_paths};
+    paths[n_paths++] = {static_cast<int16_t>(previous), static_cast<int16_t>(position),
+                        static_cast<int16_t>(best.level), static_cast<int16_t>(paths[previous].bits + best.bits)};
   }
-  // Where to end: every path, or nothing at all.
+  // Where to end: the first path that codes something is the cheapest one; or nothing at all.
   const int end_bits = kEndOfBlock.length;
-  int chosen = 0;
-  int64_t least = block.is_intra ? block.lambda * end_bits : 0;
-  for (int i = 0; i < n_live; ++i) {
-    if (live[i] == 0) continue;
-    const int64_t cost = paths[live[i]].cost + block.lambda * end_bits;
-    if (cost < least) least = cost, chosen = live[i];
-  }
+  const int first = live[0].path == 0 ? 1 : 0;
   BlockCost result;
-  result.energy = total_energy;
-  result.distortion = total_energy + paths[chosen].distortion;
-  result.bits = paths[chosen].bits + (chosen != 0 || block.is_intra ? end_bits : 0);
+  result.distortion = result.energy = energy(block);
+  result.bits = block.is_intra ? end_bits : 0;
+  int chosen = 0;
+  if (first < n_live && live[first].cost + block.lambda * end_bits < block.lambda * result.bits) {
+    chosen = live[first].path;
+    result.distortion += live[first].cost - block.lambda * paths[chosen].bits;
+    result.bits = paths[chosen].bits + end_bits;
+  }
   uint64_t kept = 0;
-  int16_t old[64];
-  std::memcpy(old, levels, sizeof old);
-  std::memset(levels + block.first_position, 0,
-              sizeof old - sizeof(int16_t) * static_cast<size_t>(block.first_position));
   for (int i = chosen; i != 0; i = paths[i].previous) {
     const Path& path = paths[i];
-    levels[path.position] = static_cast<int16_t>(old[path.position] < 0 ? -path.level : path.level);
+    levels[path.position] = levels[path.position] < 0 ? static_cast<int16_t>(-path.level) : path.level;
     kept |= uint64_t{1} << path.position;
   }
+  for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
   nonzero = kept;
   return result;
 }
@@ -140,7 +155,7 @@ BlockCost cost_of(const BlockToQuantize& block, const int16_t* levels, uint64_t 
     const int position = std::countr_zero(mask), level = magnitude_of(levels[position]);
     const int64_t c = coefficient(block, position);
     cost.distortion += squared(c - 8 * int64_t{reconstruct(block, level, position)}) - squared(c);
-    cost.bits += token_bits(block, position - last - 1, level, last == block.first_position - 1);
+    cost.bits += run_level_bits(position - last - 1, level) - saved_at_first(block, position, level);
     last = position;
   }
   if (!is_empty || block.is_intra) cost.bits += kEndOfBlock.length;

@@ -158,11 +158,11 @@ constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
 constexpr WritingTables make_writing_tables() {
   WritingTables tables{};
   for (const MacroblockType& type : kTypesOfP) tables.type_of_p[type.flags] = type.code;
-  for (auto& row : tables.bits)
-    for (uint8_t& bits : row) bits = 20;
+  for (auto& row : tables.bits) row.fill(20);
+  tables.bits.back().fill(28);
   for (const RunLevelCode& entry : kRunLevelCodes) {
     tables.run_level[entry.run][entry.level] = entry.code;
-    tables.bits[entry.run][entry.level] = static_cast<uint8_t>(entry.code.length + 1);
+    tables.bits[entry.level][entry.run] = static_cast<uint8_t>(entry.code.length + 1);
   }
   for (int run = 0; run < kTokenRuns; ++run)
     for (int level = 1 - kTokenLevels; level < kTokenLevels; ++level)

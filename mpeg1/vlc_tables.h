@@ -88,16 +88,19 @@ struct WritingTables {
   std::array<std::array<uint32_t, 2 * kTokenLevels>, kTokenRuns> token;
   // [run][|level|]: code without sign; length 0 where only the escape serves.
   std::array<std::array<Code, kMaxTableLevel + 1>, kMaxTableRun + 1> run_level;
-  // Bits of dct_coeff_next with the sign or the escape.
-  std::array<std::array<uint8_t, kMaxTableLevel + 1>, kMaxTableRun + 1> bits;
+  // Bits of dct_coeff_next with the sign or the escape, at [|level|][run]; the last two rows are those of all levels
+  // above kMaxTableLevel: below 128 and from there on.
+  std::array<std::array<uint8_t, 64>, kMaxTableLevel + 3> bits;
 };
 extern const WritingTables kWriting;
 
-// Bits of dct_coeff_next for run and |level| >= 1, sign included [2.4.3.7].
+// Bits of dct_coeff_next for |level| >= 1 after each run, sign included [2.4.3.7].
+inline const std::array<uint8_t, 64>& bits_of_level(int level) {
+  const int row = level <= kMaxTableLevel ? level : kMaxTableLevel + (level < 128 ? 1 : 2);
+  return kWriting.bits[static_cast<size_t>(row)];
+}
 inline int run_level_bits(int run, int level) {
-  if (run <= kMaxTableRun && level <= kMaxTableLevel)
-    return kWriting.bits[static_cast<size_t>(run)][static_cast<size_t>(level)];
-  return level < 128 ? 20 : 28;
+  return bits_of_level(level)[static_cast<size_t>(run)];
 }
 
 }  // namespace pac::mpeg1
