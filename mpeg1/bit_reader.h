@@ -27,7 +27,7 @@ class UnitReader {
       next_ += (63 - n_bits_) >> 3;
       n_bits_ |= 56;  // n_bits_ + 8 * ((63 - n_bits_) / 8)
     } else {
-      refill_at_end();
+      *this = refilled_at_end(*this);
     }
   }
   // The next `count` bits, 1..32; refill() guarantees 56.
@@ -48,7 +48,7 @@ class UnitReader {
 
   // Bits consumed so far.
   int64_t position_bits() const { return 8 * (next_ - begin_) + 8 * n_zero_bytes_ - n_bits_; }
-  bool overrun() const { return position_bits() > 8 * (end_ - begin_); }
+  bool overrun() const { return 8 * n_zero_bytes_ > n_bits_; }
   // Nothing but zeros is left: where a slice ends [2.4.2.6]. True past the end too.
   bool only_zeros_left() {
     refill();
@@ -63,17 +63,8 @@ class UnitReader {
   static constexpr bool kIsLittleEndian = true;
 #endif
 
-  void refill_at_end() {
-    while (n_bits_ <= 55) {
-      uint64_t byte = 0;
-      if (next_ != end_)
-        byte = *next_++;
-      else
-        ++n_zero_bytes_;
-      window_ |= byte << (56 - n_bits_);
-      n_bits_ += 8;
-    }
-  }
+  // Out of line and by value: a reader whose address nobody takes lives in registers.
+  static UnitReader refilled_at_end(UnitReader reader);
 
   const uint8_t* begin_ = nullptr;
   const uint8_t* next_ = nullptr;  // the next byte that is not in the window as a whole
@@ -82,5 +73,18 @@ class UnitReader {
   int64_t n_zero_bytes_ = 0;  // delivered past the end
   int n_bits_ = 0;
 };
+
+inline __attribute__((noinline)) UnitReader UnitReader::refilled_at_end(UnitReader reader) {
+  while (reader.n_bits_ <= 55) {
+    uint64_t byte = 0;
+    if (reader.next_ != reader.end_)
+      byte = *reader.next_++;
+    else
+      ++reader.n_zero_bytes_;
+    reader.window_ |= byte << (56 - reader.n_bits_);
+    reader.n_bits_ += 8;
+  }
+  return reader;
+}
 
 }  // namespace pac::mpeg1

@@ -9,6 +9,9 @@
 #include "mpeg1/quantizer.h"
 #include "mpeg1/vlc_tables.h"
 
+// What makes up the loop over macroblocks: a call would keep the reader in memory.
+#define PAC_INLINE inline __attribute__((always_inline))
+
 namespace pac::mpeg1 {
 namespace {
 
@@ -50,7 +53,7 @@ struct NonIntraByLevel {
 };
 
 // The level of an escape [table B.5g]: 8 bits, or 16. Zero where it is forbidden.
-inline int read_escape_level(UnitReader& bits) {
+PAC_INLINE int read_escape_level(UnitReader& bits) {
   const int first = static_cast<int8_t>(bits.peek(8));
   bits.skip(8);
   if ((first & 127) != 0) return first;
@@ -70,8 +73,7 @@ const char* text_of(int result) {
 // Coefficients after zigzag `position` until the end of the block [2.4.2.8, 2.4.4.1], of which at least 28 bits are in
 // the window: the position of the last one, or a negative result.
 template <class Dequantize>
-inline __attribute__((always_inline)) int read_coefficients(UnitReader& bits, const Dequantize& dequantize,
-                                                            int position, int16_t* coefficients) {
+PAC_INLINE int read_coefficients(UnitReader& bits, const Dequantize& dequantize, int position, int16_t* coefficients) {
   for (;;) {
     const CoefficientSymbol* symbol = &kReading.coefficient_short[bits.peek(kShortBits)];
     if (symbol->advance == kAdvanceNone) [[unlikely]]
@@ -115,6 +117,7 @@ SliceReader::SliceReader(const PictureContext& picture) : picture_(picture) {
 
 void SliceReader::start_picture() {
   kept_before_ = picture_.kept_before;
+  covered_ = picture_.covered->data();
   for (int block = 0; block < 6; ++block) {
     strides_[block] = picture_.target.stride[plane_of(block)];
     if (block < 4) offsets_[block] = (block & 1) * 8 + (block >> 1) * 8 * strides_[block];
@@ -133,70 +136,81 @@ void SliceReader::transform_all() {
 }
 
 const char* SliceReader::read(std::span<const uint8_t> bytes, int row) {
-  const char* problem = read_macroblocks(bytes, row);
+  error_ = nullptr;
+  reset_dc();
+  reset_vectors();
+  flags_ = 0;
+  address_ = row * picture_.columns - 1;
+  row_ = row - 1, column_ = picture_.columns - 1;
+  const char* problem = read_macroblocks(bytes);
   transform_all();
   if (problem != nullptr) give_up_macroblock();
   return problem;
 }
 
-const char* SliceReader::read_macroblocks(std::span<const uint8_t> bytes, int row) {
-  bits_ = UnitReader(bytes);
-  error_ = nullptr;
-  reset_dc();
-  reset_vectors();
-  address_ = row * picture_.columns - 1;
-  flags_ = 0;
-  if (!read_quantizer()) return error_;
-  while (bits_.read(1) != 0) {  // extra_information_slice
-    bits_.read(8);
-    if (bits_.overrun()) return "slice header runs past the slice";
+PAC_INLINE bool SliceReader::read_slice_header(UnitReader& bits) {
+  if (!read_quantizer(bits)) return false;
+  while (bits.read(1) != 0) {  // extra_information_slice
+    bits.read(8);
+    if (bits.overrun()) return fail("slice header runs past the slice");
   }
-  const int first = address_;
-  do {
-    if (!read_macroblock()) return error_;
-    if (bits_.overrun()) return "macroblock runs past the slice";
-    (*picture_.covered)[static_cast<size_t>(address_)] = kDecoded;
-  } while (!bits_.only_zeros_left());
-  return address_ > first ? nullptr : "slice without macroblocks";
+  bits.refill();
+  return true;
 }
 
-bool SliceReader::read_quantizer() {
-  quantizer_ = static_cast<int>(bits_.read(5));
+PAC_INLINE bool SliceReader::read_quantizer(UnitReader& bits) {
+  quantizer_ = static_cast<int>(bits.peek(5));
+  bits.skip(5);
   return quantizer_ != 0 || fail("quantizer_scale is zero");
 }
 
-// macroblock_address_increment [2.4.2.7]: bounded by the picture's end.
-bool SliceReader::read_address(int& address) {
+// macroblock_address_increment [2.4.2.7]: bounded by the picture's end. The first 11 bits are in the window; so are 45
+// after it.
+PAC_INLINE bool SliceReader::read_address(UnitReader& bits, int& address) {
   address = address_;
   for (;;) {
-    bits_.refill();
-    const Symbol symbol = kReading.address_increment[bits_.peek(11)];
+    const Symbol symbol = kReading.address_increment[bits.peek(11)];
     if (symbol.length == 0) return fail("invalid macroblock_address_increment");
-    bits_.skip(symbol.length);
+    bits.skip(symbol.length);
+    if (symbol.value < kAddressEscape) [[likely]] {
+      address += symbol.value;
+      return address < picture_.columns * picture_.rows || fail("macroblock address outside the picture");
+    }
+    bits.refill();
     if (symbol.value == kAddressStuffing) continue;  // ends with the slice's bits
-    address += symbol.value == kAddressEscape ? 33 : symbol.value;
+    address += 33;
     if (address >= picture_.columns * picture_.rows) return fail("macroblock address outside the picture");
-    if (symbol.value != kAddressEscape) return true;
   }
 }
 
-// Macroblocks [from, to) that the stream leaves out [2.4.4.4].
-bool SliceReader::skip_macroblocks(int from, int to) {
+// On to a later macroblock, inside the picture: `count` places.
+inline void SliceReader::advance(int count) {
+  address_ += count;
+  column_ += count;
+  if (column_ < picture_.columns) return;
+  for (; column_ >= picture_.columns; column_ -= picture_.columns) ++row_;
+  for (int block = 0; block < 6; ++block)
+    row_offsets_[block] = offsets_[block] + (block < 4 ? 16 : 8) * row_ * strides_[block];
+}
+
+// The next `count` macroblocks are not in the stream [2.4.4.4].
+bool SliceReader::skip_macroblocks(int count) {
   const bool is_b = picture_.header.type == PictureType::B;
   if (picture_.header.type == PictureType::I || picture_.header.type == PictureType::D)
     return fail("skipped macroblock in an I or D picture");
   if (is_b && (flags_ & kIntra) != 0) return fail("skipped macroblock after an intra one in a B picture");
   reset_dc();
   if (!is_b) reset_vectors();
-  for (int address = from; address < to;) {
-    row_ = address / picture_.columns, column_ = address % picture_.columns;
-    const int count = is_b ? 1 : std::min(to - address, picture_.columns - column_);
+  while (count > 0) {
+    advance(1);
+    const int here = is_b ? 1 : std::min(count, picture_.columns - column_);
     if (is_b)
       predict();
     else
-      keep_macroblocks(address, count);
-    std::memset(picture_.covered->data() + address, is_b ? kDecoded : picture_.skipped, static_cast<size_t>(count));
-    address += count;
+      keep_macroblocks(address_, here);
+    std::memset(covered_ + address_, is_b ? kDecoded : picture_.skipped, static_cast<size_t>(here));
+    advance(here - 1);
+    count -= here;
   }
   return true;
 }
@@ -204,7 +218,7 @@ bool SliceReader::skip_macroblocks(int from, int to) {
 // The target holds what the forward reference holds there: nothing has been written and nothing need be.
 inline bool SliceReader::shows_reference(int address) const {
   const auto i = static_cast<size_t>(address);
-  return kept_before_ != nullptr && kept_before_[i] == kKept && (*picture_.covered)[i] == kMissing;
+  return kept_before_ != nullptr && kept_before_[i] == kKept && covered_[i] == kMissing;
 }
 
 // `count` macroblocks from (column_, row_) on, inside one row, become those of the forward reference.
@@ -222,35 +236,37 @@ void SliceReader::keep_macroblocks(int first, int count) {
 void SliceReader::give_up_macroblock() {
   kept_before_ = nullptr;
   if (address_ < 0) return;
-  uint8_t& covered = (*picture_.covered)[static_cast<size_t>(address_)];
+  uint8_t& covered = covered_[address_];
   if (covered == kKept) covered = kDecoded;
 }
 
-bool SliceReader::read_component(int r_size, int16_t& component) {
-  bits_.refill();
-  const Symbol symbol = kReading.motion[bits_.peek(11)];
+// At most 17 bits, which are in the window.
+PAC_INLINE bool SliceReader::read_component(UnitReader& bits, int r_size, int16_t& component) {
+  const Symbol symbol = kReading.motion[bits.peek(11)];
   if (symbol.length == 0) return fail("invalid motion_code");
-  bits_.skip(symbol.length);
+  bits.skip(symbol.length);
   MotionCode motion{symbol.value - 16, 0};
   if (r_size != 0 && motion.code != 0) {
-    motion.r = static_cast<int>(bits_.peek(r_size));
-    bits_.skip(r_size);
+    motion.r = static_cast<int>(bits.peek(r_size));
+    bits.skip(r_size);
   }
   component = static_cast<int16_t>(vector_from(motion, component, r_size));
   return true;
 }
 
-bool SliceReader::read_vectors(uint8_t flags) {
+// 34 bits are in the window.
+PAC_INLINE bool SliceReader::read_vectors(UnitReader& bits) {
   const PictureHeader& header = picture_.header;
-  if ((flags & kForward) != 0) {
-    if (!read_component(header.forward_f_code - 1, vectors_[0].x_halfpel)) return false;
-    if (!read_component(header.forward_f_code - 1, vectors_[0].y_halfpel)) return false;
+  if ((flags_ & kForward) != 0) {
+    if (!read_component(bits, header.forward_f_code - 1, vectors_[0].x_halfpel)) return false;
+    if (!read_component(bits, header.forward_f_code - 1, vectors_[0].y_halfpel)) return false;
   } else if (header.type == PictureType::P) {
     vectors_[0] = {};
   }
-  if ((flags & kBackward) != 0) {
-    if (!read_component(header.backward_f_code - 1, vectors_[1].x_halfpel)) return false;
-    if (!read_component(header.backward_f_code - 1, vectors_[1].y_halfpel)) return false;
+  if ((flags_ & kBackward) != 0) {
+    bits.refill();
+    if (!read_component(bits, header.backward_f_code - 1, vectors_[1].x_halfpel)) return false;
+    if (!read_component(bits, header.backward_f_code - 1, vectors_[1].y_halfpel)) return false;
   }
   return true;
 }
@@ -271,7 +287,7 @@ void SliceReader::predict() {
 }
 
 // dct_dc_size and dct_dc_differential [2.4.3.7]: dc becomes the coefficient, 8 * level.
-inline bool SliceReader::read_dc(UnitReader& bits, int block, int& dc) {
+PAC_INLINE bool SliceReader::read_dc(UnitReader& bits, int block, int& dc) {
   const Symbol symbol = block < 4 ? kReading.dc_luminance[bits.peek(7)] : kReading.dc_chrominance[bits.peek(8)];
   if (symbol.length == 0) return fail("invalid dct_dc_size");
   bits.skip(symbol.length);
@@ -288,10 +304,9 @@ inline bool SliceReader::read_dc(UnitReader& bits, int block, int& dc) {
   return true;
 }
 
-bool SliceReader::read_intra_blocks() {
+PAC_INLINE bool SliceReader::read_intra_blocks(UnitReader& bits) {
   const IntraByPosition dequantize{picture_.intra->scaled[quantizer_]};
   const bool is_d = picture_.header.type == PictureType::D;
-  UnitReader bits = bits_;  // a copy in registers
   const size_t before = intra_.n;
   size_t n = before;
   bool good = true;
@@ -312,15 +327,13 @@ bool SliceReader::read_intra_blocks() {
     intra_.strides[n++] = strides_[block];
     good = last > 0 || fail(text_of(last));
   }
-  bits_ = bits;
   intra_.n = n;
   if (!good || n + 6 > kWaiting) transform(picture_.kernels->idct_put, intra_, good ? n : before);
   return good;
 }
 
 template <class Dequantize>
-bool SliceReader::read_coded_blocks(int pattern, const Dequantize& dequantize) {
-  UnitReader bits = bits_;  // a copy in registers
+PAC_INLINE bool SliceReader::read_coded_blocks(UnitReader& bits, int pattern, const Dequantize& dequantize) {
   const size_t before = inter_.n;
   size_t n = before;
   int result = 0;
@@ -344,53 +357,59 @@ bool SliceReader::read_coded_blocks(int pattern, const Dequantize& dequantize) {
     inter_.samples[n] = samples_of(block);
     inter_.strides[n++] = strides_[block];
   }
-  bits_ = bits;
   inter_.n = n;
   if (result < 0) fail(text_of(result));
   if (result < 0 || n + 6 > kWaiting) transform(picture_.kernels->idct_add, inter_, result < 0 ? before : n);
   return result >= 0;
 }
 
-// Mostly the next macroblock of the row: no division then.
-void SliceReader::move_to(int address) {
-  if (address == address_ + 1 && column_ + 1 < picture_.columns && flags_ != 0) {
-    ++column_;
-  } else {
-    row_ = address / picture_.columns, column_ = address % picture_.columns;
-  }
-  address_ = address;
-}
-
-bool SliceReader::read_macroblock() {
+// At least 56 bits are in the window: 11 of the address, 6 of the type, 5 of the quantizer, 34 of a vector.
+PAC_INLINE bool SliceReader::read_macroblock(UnitReader& bits) {
   int address = 0;
-  if (!read_address(address)) return false;
-  const bool is_first = flags_ == 0;  // the increment of a slice's first macroblock only says where it is
-  if (address > address_ + 1 && !is_first && !skip_macroblocks(address_ + 1, address)) return false;
-  move_to(address);
+  if (!read_address(bits, address)) return false;
+  const int skipped = address - address_ - 1;
+  if (skipped > 0 && flags_ == 0)  // the increment of a slice's first macroblock only says where it is
+    advance(skipped);
+  else if (skipped > 0 && !skip_macroblocks(skipped))
+    return false;
+  advance(1);
 
-  bits_.refill();
-  const Symbol type = kReading.macroblock_type[static_cast<size_t>(picture_.header.type)][bits_.peek(6)];
+  const Symbol type = kReading.macroblock_type[static_cast<size_t>(picture_.header.type)][bits.peek(6)];
   if (type.length == 0) return fail("invalid macroblock_type");
-  bits_.skip(type.length);
+  bits.skip(type.length);
   flags_ = type.value;
-  if ((flags_ & kQuant) != 0 && !read_quantizer()) return false;
+  if ((flags_ & kQuant) != 0 && !read_quantizer(bits)) return false;
   if ((flags_ & kIntra) != 0) {
     reset_vectors();
-    if (!read_intra_blocks()) return false;
-    if (picture_.header.type == PictureType::D && bits_.read(1) == 0) return fail("end_of_macroblock is zero");
+    if (!read_intra_blocks(bits)) return false;
+    if (picture_.header.type == PictureType::D && bits.read(1) == 0) return fail("end_of_macroblock is zero");
     return true;
   }
   reset_dc();
-  if (!read_vectors(flags_)) return false;
+  if (!read_vectors(bits)) return false;
   predict();
   if ((flags_ & kPattern) == 0) return true;
-  bits_.refill();
-  const Symbol pattern = kReading.pattern[bits_.peek(9)];
+  bits.refill();
+  const Symbol pattern = kReading.pattern[bits.peek(9)];
   if (pattern.length == 0) return fail("invalid coded_block_pattern");
-  bits_.skip(pattern.length);
+  bits.skip(pattern.length);
   const Dequantizer& matrix = *picture_.non_intra;
-  if (matrix.is_flat) return read_coded_blocks(pattern.value, NonIntraByLevel{matrix.values[quantizer_] + 256});
-  return read_coded_blocks(pattern.value, NonIntraByPosition{matrix.scaled[quantizer_]});
+  if (matrix.is_flat) return read_coded_blocks(bits, pattern.value, NonIntraByLevel{matrix.values[quantizer_] + 256});
+  return read_coded_blocks(bits, pattern.value, NonIntraByPosition{matrix.scaled[quantizer_]});
+}
+
+// Last, after all of its parts.
+const char* SliceReader::read_macroblocks(std::span<const uint8_t> bytes) {
+  UnitReader bits(bytes);
+  bool good = read_slice_header(bits);
+  for (bool more = good; more;) {
+    good = read_macroblock(bits);
+    if (good && bits.overrun()) good = fail("macroblock runs past the slice");
+    if (good) covered_[address_] = kDecoded;
+    more = good && !bits.only_zeros_left();
+  }
+  bits_ = bits;
+  return good ? nullptr : error_;
 }
 
 }  // namespace pac::mpeg1

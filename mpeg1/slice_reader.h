@@ -72,35 +72,41 @@ class SliceReader {
     error_ = text;
     return false;
   }
-  const char* read_macroblocks(std::span<const uint8_t> bytes, int row);
-  bool read_macroblock();
-  bool read_address(int& address);
-  bool skip_macroblocks(int from, int to);
+  // All that reads takes the reader of the slice, and is part of read_macroblocks(), where it lives in registers.
+  const char* read_macroblocks(std::span<const uint8_t> bytes);
+  bool read_slice_header(UnitReader& bits);
+  bool read_macroblock(UnitReader& bits);
+  bool read_address(UnitReader& bits, int& address);
+  bool read_quantizer(UnitReader& bits);
+  bool read_vectors(UnitReader& bits);
+  bool read_component(UnitReader& bits, int r_size, int16_t& component);
+  bool read_dc(UnitReader& bits, int block, int& dc);
+  bool read_intra_blocks(UnitReader& bits);
+  template <class Dequantize>
+  bool read_coded_blocks(UnitReader& bits, int pattern, const Dequantize& dequantize);
+
+  bool skip_macroblocks(int count);
   void keep_macroblocks(int first, int count);
   bool shows_reference(int address) const;
   void give_up_macroblock();
-  bool read_quantizer();
-  bool read_vector(int direction, bool full_pel, int f_code);
-  bool read_component(int r_size, int16_t& component);
-  bool read_vectors(uint8_t flags);
-  bool read_dc(UnitReader& bits, int block, int& dc);
-  bool read_intra_blocks();
-  template <class Dequantize>
-  bool read_coded_blocks(int pattern, const Dequantize& dequantize);
   void predict();
   void reset_dc() { dc_[0] = dc_[1] = dc_[2] = 1024; }
   void reset_vectors() { vectors_[0] = vectors_[1] = {}; }
-  void move_to(int address);
+  void advance(int count);
   // Where block 0..5 of the macroblock lies.
-  uint8_t* samples_of(int block) const { return picture_.target.at(plane_of(block), column_, row_) + offsets_[block]; }
+  uint8_t* samples_of(int block) const {
+    return picture_.target.data[plane_of(block)] + row_offsets_[block] + (block < 4 ? 16 : 8) * column_;
+  }
   static int plane_of(int block) { return block < 4 ? 0 : block - 3; }
 
   const PictureContext& picture_;
   ptrdiff_t offsets_[6] = {}, strides_[6] = {};  // of each block: from its macroblock's first sample of the plane
+  ptrdiff_t row_offsets_[6] = {};                // from the plane's first sample to that of the row's first block
+  uint8_t* covered_ = nullptr;                   // the picture's
   const uint8_t* kept_before_ = nullptr;         // the picture's, until something went wrong
-  UnitReader bits_;
+  UnitReader bits_;                              // where the last slice's reader stopped
   const char* error_ = nullptr;
-  int address_ = 0, column_ = 0, row_ = 0;
+  int address_ = 0, column_ = 0, row_ = 0;  // address_ = row_ * columns + column_
   int quantizer_ = 1;
   uint8_t flags_ = 0;        // macroblock_type of the macroblock, and of the one before for B's skipped ones
   int dc_[3] = {};           // predictions, times 8 [2.4.4.1]
