@@ -52,11 +52,18 @@ bool TilePainter::wants_color(const PaintInput& input, int rendering) {
   return !input.color[rendering].empty() || !input.difference.empty();
 }
 
+// Somebody asks which triangle the first sample shows; else its depth is all that counts. Several samples are shaded
+// from their grid.
+bool TilePainter::wants_ids(const PaintInput& input) {
+  const bool shades = wants_color(input, 0) || wants_color(input, 1);
+  return !input.id.empty() || !input.previous.empty() || (shades && input.pattern.size() == 1);
+}
+
 SamplePosition TilePainter::position(const Area& area, SampleOffset offset) {
   return {area.x * 256 + offset.x, area.y * 256 + offset.y};
 }
 
-// Depth, ids and previous positions; what it rasterizes stays in depth_ and ids_.
+// Depth, ids and previous positions; what it rasterizes stays in depth_ and, where it is wanted, ids_.
 void TilePainter::write_first_sample(const PaintInput& input, const Area& area) {
   if (input.pattern.size() > 1 && input.depth.empty() && input.id.empty() && input.previous.empty()) return;
   const SamplePosition origin = position(area, input.pattern[0]);
@@ -132,11 +139,12 @@ void TilePainter::find_transparent(const PaintInput& input) {
 
 // What is opaque or passes its mask.
 void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
+  const bool by_triangle = has_masked_ || has_blended_;
   std::fill_n(depth_, kTilePixels, 1.0f);
-  std::fill_n(ids_, kTilePixels, 0u);
-  if (!has_masked_ && !has_blended_)
+  if (by_triangle || wants_ids(input)) std::fill_n(ids_, kTilePixels, 0u);
+  if (!by_triangle)
     return input.kernels->tile.rasterize_all(triangles_.data(), static_cast<uint32_t>(triangles_.size()), origin,
-                                             depth_, ids_);
+                                             depth_, wants_ids(input) ? ids_ : nullptr);
   for (size_t i = 0; i < triangles_.size(); ++i) {
     const auto number = static_cast<uint32_t>(i + 1);
     const Surface& surface = (*input.surfaces[0])[triangles_[i]->state[0]];

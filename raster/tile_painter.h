@@ -52,6 +52,7 @@ class TilePainter {
     int number;  // of the group among all of the pixel
   };
   static bool wants_color(const PaintInput& input, int rendering);
+  static bool wants_ids(const PaintInput& input);
   static SamplePosition position(const Area& area, SampleOffset offset);
   void shade_first_sample(const PaintInput& input, const Area& area, int rendering);
   void shade_ids(const PaintInput& input, const ShadePass& pass, const uint32_t* ids, int width, int height,

@@ -277,6 +277,9 @@ TEST_CASE("rasterize_all: a tile's triangles together, many behind others, give 
       table->tile.rasterize_all(list.data(), static_cast<uint32_t>(list.size()), origin, depth, ids);
       REQUIRE(std::memcmp(expected_ids, ids, sizeof ids) == 0);
       REQUIRE(std::memcmp(expected_depth, depth, sizeof depth) == 0);
+      std::fill_n(depth, kTilePixels, 1.0f);
+      table->tile.rasterize_all(list.data(), static_cast<uint32_t>(list.size()), origin, depth, nullptr);
+      REQUIRE(std::memcmp(expected_depth, depth, sizeof depth) == 0);
     }
   }
 }

@@ -133,6 +133,9 @@ inline F8 select(M8 m, F8 a, F8 b) {
 inline I8 select(M8 m, I8 a, I8 b) {
   return {_mm256_blendv_epi8(b.v, a.v, _mm256_castps_si256(m.v))};
 }
+inline F8 select_negative(I8 m, F8 a, F8 b) {
+  return {_mm256_blendv_ps(b.v, a.v, _mm256_castsi256_ps(m.v))};
+}
 inline uint32_t bits(M8 m) {
   return static_cast<uint32_t>(_mm256_movemask_ps(m.v));
 }

@@ -180,7 +180,8 @@ struct TileKernels {
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
 
-  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1.
+  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1. ids: null where depth is all that is
+  // wanted.
   void (*rasterize_all)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
                         uint32_t* ids);
 

@@ -139,6 +139,9 @@ inline F8 select(M8 m, F8 a, F8 b) {
 inline I8 select(M8 m, I8 a, I8 b) {
   return {vbslq_s32(m.lo, a.lo, b.lo), vbslq_s32(m.hi, a.hi, b.hi)};
 }
+inline F8 select_negative(I8 m, F8 a, F8 b) {
+  return {vbslq_f32(vcltzq_s32(m.lo), a.lo, b.lo), vbslq_f32(vcltzq_s32(m.hi), a.hi, b.hi)};
+}
 inline uint32_t bits(M8 m) {
   constexpr uint32_t kLow[4] = {1, 2, 4, 8}, kHigh[4] = {16, 32, 64, 128};
   return vaddvq_u32(vorrq_u32(vandq_u32(m.lo, vld1q_u32(kLow)), vandq_u32(m.hi, vld1q_u32(kHigh))));

@@ -33,7 +33,7 @@ void rasterize(const RasterTriangle& t, uint32_t id, SamplePosition origin, floa
       const int at = py * kTileSize + px;
       if (!(z < depth[at])) continue;
       depth[at] = z;
-      ids[at] = id;
+      if (ids != nullptr) ids[at] = id;
     }
   }
 }

@@ -144,6 +144,9 @@ inline F8 select(M8 m, F8 a, F8 b) {
 inline I8 select(M8 m, I8 a, I8 b) {
   return {_mm_blendv_epi8(b.lo, a.lo, _mm_castps_si128(m.lo)), _mm_blendv_epi8(b.hi, a.hi, _mm_castps_si128(m.hi))};
 }
+inline F8 select_negative(I8 m, F8 a, F8 b) {
+  return {_mm_blendv_ps(b.lo, a.lo, _mm_castsi128_ps(m.lo)), _mm_blendv_ps(b.hi, a.hi, _mm_castsi128_ps(m.hi))};
+}
 inline uint32_t bits(M8 m) {
   return static_cast<uint32_t>(_mm_movemask_ps(m.lo) | _mm_movemask_ps(m.hi) << 4);
 }
