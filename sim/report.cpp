@@ -70,6 +70,8 @@ Text contents(const Report& report) {
   if (!report.plots.empty()) link("plots", "Rate and distortion");
   if (!report.findings.empty()) link("claims", "Claims");
   if (!report.methods.empty()) link("methods", "Methods");
+  for (const ReportLink& page : report.pages)
+    links += html_tag("a", html_attribute("href", page.file), html_escaped(page.text)) + "\n";
   return "<nav class=\"contents\" aria-label=\"Contents\"><div class=\"wrap\">\n" + links + "</div></nav>\n";
 }
 
@@ -162,9 +164,21 @@ Text table_section(const Report& report) {
                           html_tag("h3", "", "What the table says, checked") + findings_list(claims));
 }
 
+Text files_list(const std::vector<ReportLink>& files) {
+  if (files.empty()) return "";
+  Text items;
+  for (const ReportLink& file : files)
+    items += html_tag("li", "",
+                      html_tag("a", html_attribute("href", file.file), html_escaped(file.file)) + ": " +
+                          html_escaped(file.text)) +
+             "\n";
+  return html_tag("h3", "", "Files") + html_tag("ul", "class=\"plain\"", "\n" + items) + "\n";
+}
+
 Text figure_section(const ReportFigure& figure) {
   return html_section(figure.id, figure.number, figure.title,
-                      paragraphs(figure.paragraphs) + findings_list(figure.findings) + figure_pictures(figure));
+                      paragraphs(figure.paragraphs) + findings_list(figure.findings) + figure_pictures(figure) +
+                          files_list(figure.files));
 }
 
 Text plots_section(const Report& report) {

@@ -25,6 +25,13 @@ struct ReportPicture {
   std::string alt;
   int width = 0, height = 0;  // pixels
   PictureArm arm = PictureArm::none;
+  int frames = 1;              // more: the file holds them one below the other, the page plays them over and over
+  int frames_per_second = 20;  // of these
+};
+
+// A file beside the page, or another page.
+struct ReportLink {
+  std::string text, file;
 };
 
 // Pictures side by side.
@@ -58,6 +65,7 @@ struct ReportFigure {
   std::string wipe_left, wipe_right;  // ids that the wipe starts with; empty = no wipe
   std::vector<ReportCrop> crops;      // in rows of three
   std::vector<ReportFinding> findings;
+  std::vector<ReportLink> files;  // to be played or read elsewhere
 };
 
 // One number of the page's head.
@@ -79,6 +87,7 @@ struct Report {
   std::vector<std::string> methods;        // how each figure of merit is defined
   std::vector<std::string> command_lines;  // what reproduces the page
   std::string footer;
+  std::vector<ReportLink> pages;  // at the end of the contents
 };
 
 // The whole file, UTF-8.

@@ -179,6 +179,7 @@ IllustratedReport demo_report(const PaperResults& results) {
   report.findings = paper_claims(results);
   report.methods = method_texts();
   report.command_lines = {"pac demo -o out", "pac compare room -o room", "pac compare pin --quality 15 --json"};
+  report.pages = {{"Animations", "animations.html"}};
   report.footer =
       "After M. Levoy, Polygon-Assisted JPEG and MPEG Compression of Synthetic Images, Proc. SIGGRAPH 95. This page "
       "needs no "

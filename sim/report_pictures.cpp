@@ -30,11 +30,21 @@ Text wipe_button(const ReportFigure& figure, const ReportPicture& picture, const
                   Text(side));
 }
 
+// A window as large as a frame, behind which the film jumps on.
+Text film_html(const ReportPicture& picture, const Text& image) {
+  return html_tag("span",
+                  "class=\"film\" style=\"--w:" + std::to_string(picture.width) +
+                      ";--h:" + std::to_string(picture.height) + ";--frames:" + std::to_string(picture.frames) +
+                      ";--rate:" + std::to_string(picture.frames_per_second) + "\"",
+                  image);
+}
+
 Text picture_html(const ReportFigure& figure, const ReportPicture& picture) {
-  const Text size =
-      std::string("width=\"") + std::to_string(picture.width) + "\" height=\"" + std::to_string(picture.height) + "\"";
-  const Text image =
+  const Text size = std::string("width=\"") + std::to_string(picture.width) + "\" height=\"" +
+                    std::to_string(picture.height * picture.frames) + "\"";
+  Text image =
       std::string("<img ") + html_attribute("src", picture.file) + html_attribute("alt", picture.alt) + size + ">";
+  if (picture.frames > 1) image = film_html(picture, image);
   Text content = html_tag("a", html_attribute("href", picture.file), image) +
                  html_tag("figcaption", "", caption(picture.label, picture.title, picture.caption));
   if (!figure.wipe_left.empty())

@@ -99,6 +99,10 @@ table { border-collapse: collapse; font: .9rem/1.4 var(--sans); font-variant-num
 figure { margin: 0; }
 figure img, .stage img, .crop img { display: block; background: var(--faint); }
 .picture img { width: 100%; height: auto; }
+.film { display: block; overflow: hidden; aspect-ratio: var(--w) / var(--h); }
+.film img { animation: film calc(1s * var(--frames) / var(--rate)) steps(var(--frames)) infinite; }
+@keyframes film { to { transform: translateY(-100%); } }
+@media (prefers-reduced-motion: reduce) { .film img { animation: none; } .film:hover img { animation: film calc(1s * var(--frames) / var(--rate)) steps(var(--frames)) infinite; } }
 figcaption { font: .84rem/1.45 var(--sans); font-variant-numeric: lining-nums tabular-nums; margin-top: .45rem; }
 figcaption b { font-weight: 600; } figcaption .numbers { color: var(--soft); display: block; }
 .letter-tag { font-weight: 600; margin-right: .35em; }

@@ -1,10 +1,14 @@
 // The whole paper in miniature: every figure and table column, at an eighth of the size.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 
+#include "sim/paper_animations.h"
 #include "sim/paper_figures.h"
+#include "sim/report_animations.h"
 
 namespace {
 
@@ -53,10 +57,49 @@ TEST_CASE("the paper in miniature: all figures, both columns, less entropy in D 
     CHECK(keys.count(key) == 1);
 }
 
+TEST_CASE("the paper's animations in miniature: arms at matched bytes, MPEG-1 ahead, streams that the page names") {
+  sim::PaperOptions options;
+  options.size_divisor = 4;
+  const auto sets = sim::run_paper_animations(options);
+  REQUIRE(sets.ok());
+  REQUIRE(sets->size() == 2);
+  for (const sim::AnimationSet& set : *sets) {
+    INFO(set.key);
+    const auto curve = [&](sim::AnimationArm arm) -> const sim::AnimationCurve& {
+      return set.curves[static_cast<size_t>(arm)];
+    };
+    using sim::AnimationArm;
+    for (const auto& [image, assisted] : {std::pair(AnimationArm::mjpeg, AnimationArm::mjpeg_assisted),
+                                          std::pair(AnimationArm::mpeg1, AnimationArm::mpeg1_assisted),
+                                          std::pair(AnimationArm::mpeg1, AnimationArm::mpeg1_predicted)}) {
+      REQUIRE(curve(image).points.size() == curve(assisted).points.size());
+      const auto of_image = static_cast<double>(curve(image).points[sim::kShownRate].arm.bytes);
+      CHECK(static_cast<double>(curve(assisted).points[sim::kShownRate].arm.bytes) ==
+            doctest::Approx(of_image).epsilon(0.1));
+      CHECK(curve(image).points[0].arm.bytes > curve(image).points[sim::kShownRate].arm.bytes);
+    }
+    CHECK(sim::bytes_saved_percent(curve(AnimationArm::mjpeg), curve(AnimationArm::mpeg1), 0).value_or(0) > 30);
+    for (const sim::AnimationCurve& one : set.curves) {
+      CHECK(one.film.width() == set.width);
+      CHECK(one.film.height() == set.height * set.frames);
+    }
+    for (const sim::AnimationStreams& streams : set.streams)
+      CHECK(std::min({streams.image.size(), streams.difference.size(), streams.session.size()}) > 100);
+  }
+  const sim::IllustratedReport page = sim::animations_report(*sets);
+  CHECK(page.images.size() == 12);
+  const std::string html = sim::report_html(page.report);
+  for (const sim::ReportImage& image : page.images) CHECK(html.find(image.file) != std::string::npos);
+  for (const sim::AnimationStreams& streams : (*sets)[0].streams)
+    CHECK(html.find(sim::streams_folder((*sets)[0], streams) + "/difference.m") != std::string::npos);
+  CHECK(html.find("--frames:16") != std::string::npos);
+}
+
 TEST_CASE("a size divisor below one is refused") {
   sim::PaperOptions options;
   options.size_divisor = 0;
   CHECK(sim::run_paper(options).failure().error == Error::bad_argument);
+  CHECK(sim::run_paper_animations(options).failure().error == Error::bad_argument);
 }
 
 }  // namespace

@@ -17,7 +17,28 @@ void append(Bytes& out, std::span<const uint8_t> bytes) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
+// The paper's 20 frames a second is no legal picture_rate: files for players repeat pictures.
+int write_videos(const std::string& folder, int fps, std::span<const uint8_t> image,
+                 std::span<const uint8_t> difference) {
+  const auto of_image = mpeg1::with_repeats(image, 1000 * fps);
+  if (!of_image.ok()) return data_error("image.m1v", of_image.failure());
+  const auto system = mpeg1::multiplex(*of_image);
+  if (!system.ok()) return data_error("image.mpg", system.failure());
+  const auto of_difference = mpeg1::with_repeats(difference, 1000 * fps);
+  if (!of_difference.ok()) return data_error("difference.m1v", of_difference.failure());
+  if (const int code = write_output(folder + "/image.m1v", *of_image); code != kDone) return code;
+  if (const int code = write_output(folder + "/image.mpg", *system); code != kDone) return code;
+  return write_output(folder + "/difference.m1v", *of_difference);
+}
+
 }  // namespace
+
+int write_streams(const std::string& folder, sim::VideoCodec codec, int fps, std::span<const uint8_t> image,
+                  std::span<const uint8_t> difference) {
+  if (codec == sim::VideoCodec::mpeg1) return write_videos(folder, fps, image, difference);
+  if (const int code = write_output(folder + "/image.mjpeg", image); code != kDone) return code;
+  return write_output(folder + "/difference.mjpeg", difference);
+}
 
 AnimationFiles::AnimationFiles(std::string folder, sim::VideoCodec codec, int fps, Isa isa)
     : folder_(std::move(folder)), codec_(codec), fps_(fps), isa_(isa) {}
@@ -48,28 +69,9 @@ void AnimationFiles::add_frame(const sim::AnimationFrame& frame) {
   add_picture(composite_y4m_, frame.composite);
 }
 
-// The paper's 20 frames a second is no legal picture_rate: files for players repeat pictures.
-int AnimationFiles::write_videos() const {
-  const auto image = mpeg1::with_repeats(image_, 1000 * fps_);
-  if (!image.ok()) return data_error("image.m1v", image.failure());
-  const auto system = mpeg1::multiplex(*image);
-  if (!system.ok()) return data_error("image.mpg", system.failure());
-  const auto difference = mpeg1::with_repeats(difference_, 1000 * fps_);
-  if (!difference.ok()) return data_error("difference.m1v", difference.failure());
-  if (const int code = write_output(folder_ + "/image.m1v", *image); code != kDone) return code;
-  if (const int code = write_output(folder_ + "/image.mpg", *system); code != kDone) return code;
-  return write_output(folder_ + "/difference.m1v", *difference);
-}
-
-int AnimationFiles::write_jpegs() const {
-  if (const int code = write_output(folder_ + "/image.mjpeg", image_); code != kDone) return code;
-  return write_output(folder_ + "/difference.mjpeg", difference_);
-}
-
 int AnimationFiles::write() const {
   if (folder_.empty()) return kDone;
-  const int code_of_streams = codec_ == sim::VideoCodec::mpeg1 ? write_videos() : write_jpegs();
-  if (code_of_streams != kDone) return code_of_streams;
+  if (const int code = write_streams(folder_, codec_, fps_, image_, difference_); code != kDone) return code;
   const std::pair<const char*, const Bytes*> files[] = {
       {"session.pacs", &pacs_}, {"H.y4m", &high_y4m_}, {"image.y4m", &image_y4m_}, {"composite.y4m", &composite_y4m_}};
   for (const auto& [name, bytes] : files)

@@ -1,11 +1,18 @@
 // What `pac animate -o DIR` leaves behind.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "sim/animation.h"
 
 namespace pac::cli {
+
+// The streams of a sequence into a folder that exists: image.mjpeg and difference.mjpeg, or image.m1v, image.mpg (the
+// same in a system stream) and difference.m1v, at a legal picture_rate with repeated pictures. image, difference: JPEG
+// files one after the other, or MPEG-1 of `fps` pictures a second. kDone, or kBadData after the message.
+int write_streams(const std::string& folder, sim::VideoCodec codec, int fps, std::span<const uint8_t> image,
+                  std::span<const uint8_t> difference);
 
 // DIR/image.mjpeg, difference.mjpeg (one JPEG after the other, as ffplay reads them) or image.m1v, image.mpg (the same
 // in a system stream), difference.m1v, all at a legal picture_rate with repeated pictures;
@@ -23,8 +30,6 @@ class AnimationFiles {
 
  private:
   void add_picture(Bytes& sequence, const RgbImage& picture) const;
-  int write_videos() const;
-  int write_jpegs() const;
 
   std::string folder_;
   sim::VideoCodec codec_;

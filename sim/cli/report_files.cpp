@@ -21,7 +21,8 @@ int make_folder(const std::string& folder) {
   return kDone;
 }
 
-int write_report(const std::string& folder, const sim::IllustratedReport& page, const Options& options) {
+int write_report(const std::string& folder, const sim::IllustratedReport& page, const Options& options,
+                 const char* name) {
   if (const int code = make_folder(folder); code != kDone) return code;
   std::vector<Bytes> files(page.images.size());
   parallel_for(options.threads, static_cast<int64_t>(files.size()), [&](int64_t i) {
@@ -30,7 +31,7 @@ int write_report(const std::string& folder, const sim::IllustratedReport& page, 
   });
   for (size_t i = 0; i < files.size(); ++i)
     if (const int code = write_output(folder + "/" + page.images[i].file, files[i]); code != kDone) return code;
-  return write_output(folder + "/index.html", sim::report_html(page.report));
+  return write_output(folder + "/" + name, sim::report_html(page.report));
 }
 
 }  // namespace pac::cli

@@ -8,9 +8,10 @@
 
 namespace pac::cli {
 
-// Makes the folder (and those above it) where it is missing, writes the pictures as PNG on all threads, index.html
-// last, so that a page never names a picture that is not there. kDone, or kBadData after the message.
-int write_report(const std::string& folder, const sim::IllustratedReport& page, const Options& options);
+// Makes the folder (and those above it) where it is missing, writes the pictures as PNG on all threads, the page itself
+// last, so that it never names a picture that is not there. kDone, or kBadData after the message.
+int write_report(const std::string& folder, const sim::IllustratedReport& page, const Options& options,
+                 const char* name = "index.html");
 
 // mkdir -p. kDone, or kBadData after the message.
 int make_folder(const std::string& folder);

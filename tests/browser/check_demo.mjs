@@ -32,6 +32,26 @@ const cut = `parseFloat(getComputedStyle(${wipe}.querySelector('.stage')).getPro
 const clip = `getComputedStyle(${wipe}.querySelector('.layer.left')).clipPath`;
 const image = side => `${wipe}.querySelector('.layer.${side} img')`;
 
+async function checkAnimations() {
+  await check('the animations page loads', () => browser.open(pathToFileURL(resolve(outDir, 'animations.html')).href));
+  await check('every film decodes, and is as tall as its frames', async () => {
+    const wrong = await browser.evaluate(`Promise.all([...document.querySelectorAll('.film img')].map(film =>
+      film.decode().then(() => film.naturalHeight === 16 * film.naturalWidth ? '' : film.src, () => film.src))).then(all => all.filter(Boolean))`);
+    assert.deepEqual(wrong, []);
+    assert.equal(await browser.evaluate('document.querySelectorAll(".film img").length'), 12);
+  });
+  await check('the films play by whole frames', async () => {
+    const film = 'document.querySelector(".film img")';
+    const place = ms => browser.evaluate(`(() => { const [a] = ${film}.getAnimations(); a.pause(); a.currentTime = ${ms};
+      return new DOMMatrix(getComputedStyle(${film}).transform).m42 / ${film}.parentElement.clientHeight; })()`);
+    for (const [ms, frames] of [[0, 0], [60, -1], [799, -15]]) assert.ok(Math.abs(await place(ms) - frames) < 0.02);
+  });
+  await check('every file that the page links to is there', async () => {
+    for (const file of await browser.evaluate('[...document.querySelectorAll("a[href]")].map(a => a.getAttribute("href"))'))
+      if (!file.startsWith('#')) assert.ok(readFileSync(join(outDir, file)).length > 100, file);
+  });
+}
+
 async function stageBox() {
   return browser.evaluate(`(() => {
     const stage = ${wipe}.querySelector('.stage');
@@ -173,6 +193,7 @@ try {
   await checkPage();
   await checkWipe();
   await checkLayouts();
+  await checkAnimations();
   await checkJpegs();
   await check('no error was logged and nothing was asked of the network', () => assert.deepEqual(problems, []));
   console.log(`${n_checks} checks passed`);
