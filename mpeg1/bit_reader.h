@@ -36,6 +36,12 @@ class UnitReader {
     window_ <<= count;
     n_bits_ -= count;
   }
+  // A leading 1 is read twice; at most 63 bits available before.
+  void double_leading_one() {
+    const uint64_t one = window_ >> 63;
+    window_ = one << 63 | window_ >> one;
+    n_bits_ += static_cast<int>(one);
+  }
   int available() const { return n_bits_; }
   // With its own refill: for headers.
   uint32_t read(int count) {

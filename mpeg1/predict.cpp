@@ -8,73 +8,71 @@
 namespace pac::mpeg1 {
 namespace {
 
-// A block of size x size samples (16 or 8) at (x, y) + vector/2.
-struct BlockPlace {
-  int x, y, size, plane_width, plane_height;
-};
-
 // The rectangle that a prediction reads leaves the plane: a copy of it with the edge repeated.
 constexpr ptrdiff_t kPatchStride = 32;
 struct Patch {
   uint8_t samples[17 * kPatchStride];
 };
-void make_patch(const uint8_t* plane, ptrdiff_t stride, const BlockPlace& place, int left, int top, Patch& patch) {
-  for (int y = 0; y <= place.size; ++y) {
-    const uint8_t* row = plane + ptrdiff_t{std::clamp(top + y, 0, place.plane_height - 1)} * stride;
-    for (int x = 0; x <= place.size; ++x)
-      patch.samples[y * kPatchStride + x] = row[std::clamp(left + x, 0, place.plane_width - 1)];
+// (size + 1) x (size + 1) samples from (left, top) on.
+void make_patch(const Planes& reference, int plane, int left, int top, int size, Patch& patch) {
+  const int right = (plane == 0 ? reference.width : reference.width / 2) - 1;
+  const int bottom = (plane == 0 ? reference.height : reference.height / 2) - 1;
+  for (int y = 0; y <= size; ++y) {
+    const uint8_t* row = reference.data[plane] + std::clamp(top + y, 0, bottom) * reference.stride[plane];
+    for (int x = 0; x <= size; ++x) patch.samples[y * kPatchStride + x] = row[std::clamp(left + x, 0, right)];
   }
 }
 
-void predict_block(const MotionKernels& kernels, const uint8_t* plane, ptrdiff_t stride, const BlockPlace& place,
-                   MotionVector vector, uint8_t* target, ptrdiff_t target_stride) {
-  const int half_x = vector.x_halfpel & 1, half_y = vector.y_halfpel & 1;
-  const int left = place.x + (vector.x_halfpel >> 1), top = place.y + (vector.y_halfpel >> 1);
-  const auto* predict = place.size == 16 ? kernels.predict16 : kernels.predict8;
-  const int kind = half_x + 2 * half_y;
-  const bool inside = left >= 0 && top >= 0 && left + place.size + half_x <= place.plane_width &&
-                      top + place.size + half_y <= place.plane_height;
-  if (inside) {
-    predict[kind](plane + top * stride + left, stride, target, target_stride, place.size);
-    return;
-  }
-  Patch patch;
-  make_patch(plane, stride, place, left, top, patch);
-  predict[kind](patch.samples, kPatchStride, target, target_stride, place.size);
+// What the prediction of a macroblock reads: from where in luma and chroma, and which half samples.
+struct ReferencePlace {
+  int x, y, kind;
+};
+ReferencePlace place_of(int left, int top, MotionVector vector) {
+  return {left + (vector.x_halfpel >> 1), top + (vector.y_halfpel >> 1),
+          (vector.x_halfpel & 1) + 2 * (vector.y_halfpel & 1)};
 }
 
-// A few units of a fixed size: without the call that a size unknown to the compiler takes.
-constexpr int kLongRun = 8;
-template <int kBytes>
-void copy_units(const uint8_t* from, uint8_t* to, int count) {
-  for (int i = 0; i < count; ++i) std::memcpy(to + i * kBytes, from + i * kBytes, kBytes);
+void predict_across_edge(const MotionKernels& kernels, const Planes& reference, const ReferencePlace& luma,
+                         const ReferencePlace& chroma, const Planes& target, int column, int row) {
+  Patch patches[2];
+  make_patch(reference, 0, luma.x, luma.y, 16, patches[0]);
+  kernels.predict16[luma.kind](patches[0].samples, kPatchStride, target.at(0, column, row), target.stride[0], 16);
+  make_patch(reference, 1, chroma.x, chroma.y, 8, patches[0]);
+  make_patch(reference, 2, chroma.x, chroma.y, 8, patches[1]);
+  const uint8_t* const from[2] = {patches[0].samples, patches[1].samples};
+  uint8_t* const to[2] = {target.at(1, column, row), target.at(2, column, row)};
+  kernels.predict8_pair[chroma.kind](from, kPatchStride, to, target.stride[1]);
 }
+
+// Blocks of a fixed size: without loops, and without the call that a size unknown to the compiler takes.
+template <int kSize>
+void copy_block(const uint8_t* from, ptrdiff_t from_stride, uint8_t* to, ptrdiff_t to_stride) {
+  for (int y = 0; y < kSize; ++y) std::memcpy(to + y * to_stride, from + y * from_stride, kSize);
+}
+void copy_macroblock(const Planes& reference, int column, int row, const Planes& target) {
+  copy_block<16>(reference.at(0, column, row), reference.stride[0], target.at(0, column, row), target.stride[0]);
+  copy_block<8>(reference.at(1, column, row), reference.stride[1], target.at(1, column, row), target.stride[1]);
+  copy_block<8>(reference.at(2, column, row), reference.stride[2], target.at(2, column, row), target.stride[2]);
+}
+constexpr int kLongRun = 4;
 
 }  // namespace
 
 void predict_macroblock(const MotionKernels& kernels, const Planes& reference, int column, int row, MotionVector vector,
                         const Planes& target, int target_column, int target_row) {
-  const MotionVector chroma = chroma_vector(vector);
-  const int left = 16 * column + (vector.x_halfpel >> 1), top = 16 * row + (vector.y_halfpel >> 1);
-  const int half_x = vector.x_halfpel & 1, half_y = vector.y_halfpel & 1;
-  if (left >= 0 && top >= 0 && left + 16 + half_x <= reference.width && top + 16 + half_y <= reference.height) {
-    // Half the vector, toward zero, from half the position: chroma is inside, too.
-    kernels.predict16[half_x + 2 * half_y](reference.data[0] + top * reference.stride[0] + left, reference.stride[0],
-                                           target.at(0, target_column, target_row), target.stride[0], 16);
-    const ptrdiff_t x = 8 * column + (chroma.x_halfpel >> 1), y = 8 * row + (chroma.y_halfpel >> 1);
-    const int kind = (chroma.x_halfpel & 1) + 2 * (chroma.y_halfpel & 1);
-    for (const int plane : {1, 2})
-      kernels.predict8[kind](reference.data[plane] + y * reference.stride[plane] + x, reference.stride[plane],
-                             target.at(plane, target_column, target_row), target.stride[plane], 8);
-    return;
-  }
-  predict_block(kernels, reference.data[0], reference.stride[0],
-                {16 * column, 16 * row, 16, reference.width, reference.height}, vector,
-                target.at(0, target_column, target_row), target.stride[0]);
-  for (const int plane : {1, 2})
-    predict_block(kernels, reference.data[plane], reference.stride[plane],
-                  {8 * column, 8 * row, 8, reference.width / 2, reference.height / 2}, chroma,
-                  target.at(plane, target_column, target_row), target.stride[plane]);
+  PAC_ASSERT(reference.stride[1] == reference.stride[2] && target.stride[1] == target.stride[2]);
+  const ReferencePlace luma = place_of(16 * column, 16 * row, vector);
+  const ReferencePlace chroma = place_of(8 * column, 8 * row, chroma_vector(vector));
+  // Inside or not: half the vector, toward zero, from half the position leads chroma inside where luma is.
+  if (luma.x < 0 || luma.y < 0 || luma.x + 16 + (luma.kind & 1) > reference.width ||
+      luma.y + 16 + (luma.kind >> 1) > reference.height) [[unlikely]]
+    return predict_across_edge(kernels, reference, luma, chroma, target, target_column, target_row);
+  kernels.predict16[luma.kind](reference.data[0] + luma.y * reference.stride[0] + luma.x, reference.stride[0],
+                               target.at(0, target_column, target_row), target.stride[0], 16);
+  const ptrdiff_t at = chroma.y * reference.stride[1] + chroma.x;
+  const uint8_t* const from[2] = {reference.data[1] + at, reference.data[2] + at};
+  uint8_t* const to[2] = {target.at(1, target_column, target_row), target.at(2, target_column, target_row)};
+  kernels.predict8_pair[chroma.kind](from, reference.stride[1], to, target.stride[1]);
 }
 
 void average_macroblock(const MotionKernels& kernels, const Planes& reference, int column, int row, MotionVector vector,
@@ -90,20 +88,16 @@ void average_macroblock(const MotionKernels& kernels, const Planes& reference, i
 }
 
 void copy_macroblocks(const Planes& reference, int column, int row, int count, const Planes& target) {
+  if (count < kLongRun) {
+    for (int i = 0; i < count; ++i) copy_macroblock(reference, column + i, row, target);
+    return;
+  }
   for (const int plane : {0, 1, 2}) {
     const int size = plane == 0 ? 16 : 8;
     const uint8_t* from = reference.at(plane, column, row);
     uint8_t* to = target.at(plane, column, row);
-    for (int y = 0; y < size; ++y) {
-      if (count > kLongRun)
-        std::memcpy(to, from, static_cast<size_t>(size * count));
-      else if (size == 16)
-        copy_units<16>(from, to, count);
-      else
-        copy_units<8>(from, to, count);
-      from += reference.stride[plane];
-      to += target.stride[plane];
-    }
+    for (int y = 0; y < size; ++y, from += reference.stride[plane], to += target.stride[plane])
+      std::memcpy(to, from, static_cast<size_t>(size * count));
   }
 }
 

@@ -342,13 +342,8 @@ PAC_INLINE bool SliceReader::read_coded_blocks(UnitReader& bits, int pattern, co
     left &= ~(1u << (31 - block));
     int16_t* coefficients = inter_.coefficients + 64 * n;
     bits.refill();
-    int position = -1;
-    if (bits.peek(1) != 0) {  // dct_coeff_first: '1s' is run 0, level 1
-      position = 0;
-      coefficients[0] = static_cast<int16_t>(dequantize(bits.peek(2) == 2 ? 1 : -1, 0));
-      bits.skip(2);
-    }
-    result = read_coefficients(bits, dequantize, position, coefficients);
+    bits.double_leading_one();  // dct_coeff_first: '1s' is run 0, level 1, which is '11s' later on
+    result = read_coefficients(bits, dequantize, -1, coefficients);
     if (result == 0) {
       picture_.kernels->idct_dc_add(coefficients[0], samples_of(block), strides_[block]);
       coefficients[0] = 0;

@@ -41,11 +41,12 @@ struct MotionKernels {
   // Sum of the 16x16 samples, and of their squares.
   void (*moments16)(const uint8_t* source, ptrdiff_t stride, uint32_t* sum, uint32_t* sum_of_squares);
 
-  // Predictions of 16 and 8 samples width; height any. No overlap of the two.
+  // Predictions of 16 samples width; height any. No overlap of the two.
   void (*predict16[kHalfPelKinds])(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction,
                                    ptrdiff_t prediction_stride, int height);
-  void (*predict8[kHalfPelKinds])(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction,
-                                  ptrdiff_t prediction_stride, int height);
+  // The same of 8x8 samples from each of two references: both chroma planes.
+  void (*predict8_pair[kHalfPelKinds])(const uint8_t* const references[2], ptrdiff_t reference_stride,
+                                       uint8_t* const predictions[2], ptrdiff_t prediction_stride);
   // prediction = (prediction + other + 1) >> 1 over width (8 or 16) x height samples.
   void (*average)(uint8_t* prediction, ptrdiff_t prediction_stride, const uint8_t* other, ptrdiff_t other_stride,
                   int width, int height);

@@ -13,28 +13,24 @@ namespace {
 
 // ---- Prediction and distances --------------------------------------------------------------------------------------
 
-// Rows of 8 samples lie in the low half; the high half is theirs again.
-template <int kWidth>
-PAC_INLINE uint8x16_t load_row(const uint8_t* p) {
-  if constexpr (kWidth == 16) return vld1q_u8(p);
-  const uint8x8_t half_row = vld1_u8(p);
-  return vcombine_u8(half_row, half_row);
-}
-template <int kWidth>
-PAC_INLINE void store_row(uint8_t* p, uint8x16_t v) {
-  if constexpr (kWidth == 16)
-    vst1q_u8(p, v);
-  else
-    vst1_u8(p, vget_low_u8(v));
-}
+// Rows of 16 samples, and rows of 8 of two references side by side.
+struct OneReference {
+  const uint8_t* samples;
+  PAC_INLINE uint8x16_t row(ptrdiff_t at) const { return vld1q_u8(samples + at); }
+};
+struct TwoReferences {
+  const uint8_t* first;
+  const uint8_t* second;
+  PAC_INLINE uint8x16_t row(ptrdiff_t at) const { return vcombine_u8(vld1_u8(first + at), vld1_u8(second + at)); }
+};
 
 // The sums of a row and its right neighbors.
 struct RowSums {
   uint16x8_t low, high;
 };
-template <int kWidth>
-PAC_INLINE RowSums sum_right(const uint8_t* p) {
-  const uint8x16_t a = load_row<kWidth>(p), b = load_row<kWidth>(p + 1);
+template <class Reference>
+PAC_INLINE RowSums sum_right(const Reference& reference, ptrdiff_t at) {
+  const uint8x16_t a = reference.row(at), b = reference.row(at + 1);
   return {vaddl_u8(vget_low_u8(a), vget_low_u8(b)), vaddl_u8(vget_high_u8(a), vget_high_u8(b))};
 }
 PAC_INLINE uint8x16_t average_4(const RowSums& top, const RowSums& bottom) {
@@ -43,37 +39,44 @@ PAC_INLINE uint8x16_t average_4(const RowSums& top, const RowSums& bottom) {
 }
 
 // Calls use(y, prediction) for each row.
-template <int kWidth, int kKind, class Use>
-PAC_INLINE void for_each_prediction(const uint8_t* reference, ptrdiff_t stride, int height, const Use& use) {
+template <int kKind, class Reference, class Use>
+PAC_INLINE void for_each_prediction(const Reference& reference, ptrdiff_t stride, int height, const Use& use) {
   if constexpr (kKind == 0) {
-    for (int y = 0; y < height; ++y) use(y, load_row<kWidth>(reference + y * stride));
+    for (int y = 0; y < height; ++y) use(y, reference.row(y * stride));
   } else if constexpr (kKind == 1) {
-    for (int y = 0; y < height; ++y) {
-      const uint8_t* p = reference + y * stride;
-      use(y, vrhaddq_u8(load_row<kWidth>(p), load_row<kWidth>(p + 1)));
-    }
+    for (int y = 0; y < height; ++y) use(y, vrhaddq_u8(reference.row(y * stride), reference.row(y * stride + 1)));
   } else if constexpr (kKind == 2) {
-    uint8x16_t above = load_row<kWidth>(reference);
+    uint8x16_t above = reference.row(0);
     for (int y = 0; y < height; ++y) {
-      const uint8x16_t below = load_row<kWidth>(reference + (y + 1) * stride);
+      const uint8x16_t below = reference.row((y + 1) * stride);
       use(y, vrhaddq_u8(above, below));
       above = below;
     }
   } else {
-    RowSums above = sum_right<kWidth>(reference);
+    RowSums above = sum_right(reference, 0);
     for (int y = 0; y < height; ++y) {
-      const RowSums below = sum_right<kWidth>(reference + (y + 1) * stride);
+      const RowSums below = sum_right(reference, (y + 1) * stride);
       use(y, average_4(above, below));
       above = below;
     }
   }
 }
 
-template <int kWidth, int kKind>
-void predict(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction, ptrdiff_t prediction_stride,
-             int height) {
-  for_each_prediction<kWidth, kKind>(reference, reference_stride, height, [&](int y, uint8x16_t row) {
-    store_row<kWidth>(prediction + y * prediction_stride, row);
+template <int kKind>
+void predict16(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction, ptrdiff_t prediction_stride,
+               int height) {
+  for_each_prediction<kKind>(OneReference{reference}, reference_stride, height,
+                             [&](int y, uint8x16_t row) { vst1q_u8(prediction + y * prediction_stride, row); });
+}
+template <int kKind>
+void predict8_pair(const uint8_t* const references[2], ptrdiff_t reference_stride, uint8_t* const predictions[2],
+                   ptrdiff_t prediction_stride) {
+  const TwoReferences both = {references[0], references[1]};
+  uint8_t* const first = predictions[0];
+  uint8_t* const second = predictions[1];
+  for_each_prediction<kKind>(both, reference_stride, 8, [&](int y, uint8x16_t row) {
+    vst1_u8(first + y * prediction_stride, vget_low_u8(row));
+    vst1_u8(second + y * prediction_stride, vget_high_u8(row));
   });
 }
 
@@ -81,7 +84,7 @@ template <int kKind>
 uint32_t sad16_half(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                     ptrdiff_t reference_stride) {
   uint16x8_t sum = vdupq_n_u16(0);  // 16 rows of two differences a lane: below 2^14
-  for_each_prediction<16, kKind>(reference, reference_stride, 16, [&](int y, uint8x16_t row) {
+  for_each_prediction<kKind>(OneReference{reference}, reference_stride, 16, [&](int y, uint8x16_t row) {
     sum = vpadalq_u8(sum, vabdq_u8(row, vld1q_u8(source + y * source_stride)));
   });
   return vaddlvq_u16(sum);
@@ -313,10 +316,10 @@ void fill_motion_neon(MotionKernels& table) {
   table.satd16 = satd16;
   table.sse = sse;
   table.moments16 = moments16;
-  table.predict16[0] = predict<16, 0>, table.predict16[1] = predict<16, 1>;
-  table.predict16[2] = predict<16, 2>, table.predict16[3] = predict<16, 3>;
-  table.predict8[0] = predict<8, 0>, table.predict8[1] = predict<8, 1>;
-  table.predict8[2] = predict<8, 2>, table.predict8[3] = predict<8, 3>;
+  table.predict16[0] = predict16<0>, table.predict16[1] = predict16<1>;
+  table.predict16[2] = predict16<2>, table.predict16[3] = predict16<3>;
+  table.predict8_pair[0] = predict8_pair<0>, table.predict8_pair[1] = predict8_pair<1>;
+  table.predict8_pair[2] = predict8_pair<2>, table.predict8_pair[3] = predict8_pair<3>;
   table.average = average;
   table.fdct_residual = fdct_residual;
   table.fdct_residual_reaching = fdct_residual_reaching;

@@ -37,6 +37,16 @@ void predict(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* pred
       prediction[y * prediction_stride + x] =
           static_cast<uint8_t>(half_pel<kKind>(reference + y * reference_stride + x, reference_stride));
 }
+template <int kKind>
+void predict16(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction, ptrdiff_t prediction_stride,
+               int height) {
+  predict<16, kKind>(reference, reference_stride, prediction, prediction_stride, height);
+}
+template <int kKind>
+void predict8_pair(const uint8_t* const references[2], ptrdiff_t reference_stride, uint8_t* const predictions[2],
+                   ptrdiff_t prediction_stride) {
+  for (int i = 0; i < 2; ++i) predict<8, kKind>(references[i], reference_stride, predictions[i], prediction_stride, 8);
+}
 
 void average(uint8_t* prediction, ptrdiff_t prediction_stride, const uint8_t* other, ptrdiff_t other_stride, int width,
              int height) {
@@ -266,10 +276,10 @@ void fill_motion_scalar(MotionKernels& table) {
   table.satd16 = satd16;
   table.sse = sse;
   table.moments16 = moments16;
-  table.predict16[0] = predict<16, 0>, table.predict16[1] = predict<16, 1>;
-  table.predict16[2] = predict<16, 2>, table.predict16[3] = predict<16, 3>;
-  table.predict8[0] = predict<8, 0>, table.predict8[1] = predict<8, 1>;
-  table.predict8[2] = predict<8, 2>, table.predict8[3] = predict<8, 3>;
+  table.predict16[0] = predict16<0>, table.predict16[1] = predict16<1>;
+  table.predict16[2] = predict16<2>, table.predict16[3] = predict16<3>;
+  table.predict8_pair[0] = predict8_pair<0>, table.predict8_pair[1] = predict8_pair<1>;
+  table.predict8_pair[2] = predict8_pair<2>, table.predict8_pair[3] = predict8_pair<3>;
   table.average = average;
   table.fdct_residual = fdct_residual;
   table.fdct_residual_reaching = fdct_residual_reaching;
