@@ -44,40 +44,47 @@ struct LivePath {
   int path;
 };
 
-// The cheapest of the paths that end at a position.
-struct Step {
-  int64_t cost = INT64_MAX;
-  int from = 0, level = 0, bits = 0;
+// Coding a level at a position: bits after each run, and distortion less that of zero.
+constexpr int64_t kNever = int64_t{1} << 60;
+struct Choice {
+  const uint8_t* bits;
+  int64_t gained;
 };
-
-// Coding |level| at the position, after the cheapest of the live paths; `gained` is its distortion less that of zero.
-inline void take_cheapest(const BlockToQuantize& block, const LivePath* live, int n_live, int position, int level,
-                          int64_t gained, Step& best) {
-  const uint8_t* bits_of_run = bits_of_level(level).data();
-  const int saved = saved_at_first(block, position, level);
-  for (int i = 0; i < n_live; ++i) {
-    const int bits = bits_of_run[position - live[i].position - 1] - saved;
-    const int64_t cost = live[i].cost + gained + block.lambda * bits;
-    if (cost < best.cost) best = {cost, i, level, bits};
-  }
+template <bool kIsIntra>
+inline Choice make_choice(int level, int weight, int c) {
+  const int r = 8 * (kIsIntra ? reconstruct_intra(level, weight) : reconstruct_non_intra(level, weight));
+  const bool is_allowed = level > 0 && r != 0;                                  // decoders disagree about 0
+  return {bits_of_level(level).data(), is_allowed ? r * (r - 2 * c) : kNever};  // (c - r)^2 - c^2
 }
 
-}  // namespace
-
-// |c| <= 16384: eight squares fit 32 bits.
-int64_t energy(const BlockToQuantize& block) {
-  uint32_t sums[8] = {};
-  for (int y = 0; y < 8; ++y)
-    for (int x = 0; x < 8; ++x) {
-      const int c = block.dct[8 * y + x];
-      sums[x] += static_cast<uint32_t>(c * c);
+// The cheapest of the paths that end at a position, with one of two levels there.
+struct Step {
+  int64_t cost = kNever;
+  int from = 0, bits = 0;
+  bool is_second = false;
+};
+inline Step cheapest(const LivePath* live, int n_live, int position, int64_t lambda, const Choice (&choices)[2]) {
+  Step best;
+  for (int second = 0; second < 2; ++second)
+    for (int i = 0; i < n_live; ++i) {
+      const int bits = choices[second].bits[position - live[i].position - 1];
+      const int64_t cost = live[i].cost + choices[second].gained + lambda * bits;
+      if (cost < best.cost) best = {cost, i, bits, second != 0};
     }
-  int64_t sum = block.first_position == 0 ? 0 : -squared(block.dct[0]);
-  for (const uint32_t part : sums) sum += part;
-  return sum;
+  return best;
+}
+// The same of the only path, as it mostly is.
+inline Step only_step(const LivePath& from, int position, int64_t lambda, const Choice (&choices)[2]) {
+  const int run = position - from.position - 1;
+  const int bits[2] = {choices[0].bits[run], choices[1].bits[run]};
+  const int64_t first = choices[0].gained + lambda * bits[0], second = choices[1].gained + lambda * bits[1];
+  const bool is_second = second < first;
+  return {from.cost + (is_second ? second : first), 0, is_second ? bits[1] : bits[0], is_second};
 }
 
-BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
+template <bool kIsIntra>
+BlockCost quantize(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
+  const int64_t lambda = block.lambda;
   Path paths[65];
   // Costs grow from path to path: one that a later one beats is dropped, as a longer run never has a shorter code
   // worth speaking of.
@@ -87,31 +94,33 @@ BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64
   live[n_live++] = {0, block.first_position - 1, 0};
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
-    const int c = coefficient(block, position), rounded = magnitude_of(levels[position]);
-    Step best;
-    for (int level = rounded; level >= 1 && level >= rounded - 1; --level) {
-      const int r = 8 * reconstruct(block, level, position);
-      if (r == 0) continue;                                                        // decoders disagree about it
-      take_cheapest(block, live, n_live, position, level, r * (r - 2 * c), best);  // (c - r)^2 - c^2
-    }
-    if (best.level == 0) continue;
+    const int c = coefficient(block, position), weight = block.weight[position], level = magnitude_of(levels[position]);
+    Choice choices[2] = {make_choice<kIsIntra>(level, weight, c), make_choice<kIsIntra>(level - 1, weight, c)};
+    const int first_saves = kIsIntra || position != block.first_position ? 0 : 1;  // where the level is 1
+    if (first_saves != 0 && level <= 2) choices[level - 1].gained -= lambda;
+    Step best =
+        n_live == 1 ? only_step(live[0], position, lambda, choices) : cheapest(live, n_live, position, lambda, choices);
+    if (best.cost >= kNever / 2) continue;
+    const int chosen_level = level - (best.is_second ? 1 : 0);
+    if (first_saves != 0 && chosen_level == 1) --best.bits;
     const int previous = live[best.from].path;
     while (n_live > 0 && live[n_live - 1].cost >= best.cost) --n_live;
-    if (n_live > 0 && best.cost > live[n_live - 1].cost + 24 * block.lambda) continue;
+    if (n_live > 0 && best.cost > live[n_live - 1].cost + 24 * lambda) continue;
     live[n_live++] = {best.cost, position, n_paths};
     paths[n_paths++] = {static_cast<int16_t>(previous), static_cast<int16_t>(position),
-                        static_cast<int16_t>(best.level), static_cast<int16_t>(paths[previous].bits + best.bits)};
+                        static_cast<int16_t>(chosen_level), static_cast<int16_t>(paths[previous].bits + best.bits)};
   }
   // Where to end: the first path that codes something is the cheapest one; or nothing at all.
   const int end_bits = kEndOfBlock.length;
   const int first = live[0].path == 0 ? 1 : 0;
   BlockCost result;
   result.distortion = result.energy = energy(block);
-  result.bits = block.is_intra ? end_bits : 0;
+  result.bits = kIsIntra ? end_bits : 0;
   int chosen = 0;
-  if (first < n_live && live[first].cost + block.lambda * end_bits < block.lambda * result.bits) {
+  const int64_t cost = first < n_live ? live[first].cost : kNever;
+  if (cost + block.lambda * end_bits < block.lambda * result.bits) {
     chosen = live[first].path;
-    result.distortion += live[first].cost - block.lambda * paths[chosen].bits;
+    result.distortion += cost - block.lambda * paths[chosen].bits;
     result.bits = paths[chosen].bits + end_bits;
   }
   uint64_t kept = 0;
@@ -123,6 +132,19 @@ BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64
   for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
   nonzero = kept;
   return result;
+}
+
+}  // namespace
+
+// The transform keeps energies, but for a factor of 64: 64 * 64 errors of 255^2 and roundings stay below 2^29.
+int64_t energy(const BlockToQuantize& block) {
+  int32_t sum = 0;
+  for (int i = 0; i < 64; ++i) sum += block.dct[i] * block.dct[i];
+  return block.first_position == 0 ? sum : sum - squared(block.dct[0]);
+}
+
+BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
+  return block.is_intra ? quantize<true>(block, levels, nonzero) : quantize<false>(block, levels, nonzero);
 }
 
 void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
