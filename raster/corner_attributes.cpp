@@ -203,26 +203,6 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
   }
 }
 
-void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3], float record[9]) {
-  const uint8_t* const colors[3] = {vertices[order[0]]->color, vertices[order[1]]->color, vertices[order[2]]->color};
-  for (int c = 0; c < 3; ++c) {
-    const float a0 = static_cast<float>(colors[0][c]) * surface.mean[c];
-    record[3 * c] = a0;
-    record[3 * c + 1] = static_cast<float>(colors[1][c]) * surface.mean[c] - a0;
-    record[3 * c + 2] = static_cast<float>(colors[2][c]) * surface.mean[c] - a0;
-  }
-}
-
-void write_lit_record(const float* const lit[3], const int order[3], float record[9]) {
-  const float *const corner0 = lit[order[0]], *const corner1 = lit[order[1]], *const corner2 = lit[order[2]];
-  for (int c = 0; c < 3; ++c) {
-    const float a0 = corner0[c] + corner0[c + 3];
-    record[3 * c] = a0;
-    record[3 * c + 1] = (corner1[c] + corner1[c + 3]) - a0;
-    record[3 * c + 2] = (corner2[c] + corner2[c + 3]) - a0;
-  }
-}
-
 bool write_normal_record(const Vertex* const vertices[3], const int order[3], float record[27]) {
   const Vertex* const v[3] = {vertices[order[0]], vertices[order[1]], vertices[order[2]]};
   bool bounded = true;

@@ -38,11 +38,8 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
 
 // The record that the kernels read, for a triangle whose corner i is the mean of the given corners with weights[i]:
 // a0, a1 - a0, a2 - a0 for each attribute. write_whole_record: corner i is the given corner order[i].
-// From the vertices at once: write_color_record for unlit surfaces without other attributes; write_lit_record for
-// those lit at corners, from what light_points() gave; write_normal_record for those lit at each sample without texture
-// coordinates or opacity (false: positions are too large for it). The normals are the vertices' own.
-void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3], float record[9]);
-void write_lit_record(const float* const lit[3], const int order[3], float record[9]);
+// write_normal_record: from the vertices at once, for surfaces lit at each sample without texture coordinates or opacity
+// (false: positions are too large for it). The normals are the vertices' own.
 bool write_normal_record(const Vertex* const vertices[3], const int order[3], float record[27]);
 void write_whole_record(const CornerAttributes& corners, const int order[3], int n_attributes, float* record);
 void write_record(const CornerAttributes& corners, const float* const weights[3], int n_attributes, float* record);

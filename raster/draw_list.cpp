@@ -1,7 +1,6 @@
 #include "raster/draw_list.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace pac::raster {
 namespace {
@@ -45,10 +44,18 @@ bool may_touch(const RasterTriangle& t, int tile_x, int tile_y, const SampleHull
   return true;
 }
 
+// Bits of a mask of eight; base code may not count on the instruction for it.
+size_t count_lanes(uint32_t mask) {
+  constexpr uint64_t kOfFour = 0x4332322132212110;
+  return (kOfFour >> 4 * (mask & 15) & 15) + (kOfFour >> 4 * (mask >> 4) & 15);
+}
+
 // Calls visit(tile) for each tile that the triangle may touch.
 template <class Visit>
 void for_each_tile(const RasterTriangle& t, int tiles_x, const SampleHull& hull, Visit&& visit) {
-  const int x0 = t.min_x / kTileSize, x1 = t.max_x / kTileSize, y0 = t.min_y / kTileSize, y1 = t.max_y / kTileSize;
+  constexpr int kShift = 5;
+  static_assert(1 << kShift == kTileSize);
+  const int x0 = t.min_x >> kShift, x1 = t.max_x >> kShift, y0 = t.min_y >> kShift, y1 = t.max_y >> kShift;
   const bool test = x1 - x0 + y1 - y0 > 1;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
@@ -119,7 +126,8 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
   chunk.result = {};
   const Mesh& mesh = *input.mesh;
   const size_t n_materials = input.scene->materials.size();
-  for (size_t i = first_face; i < last_face; ++i) {
+  for (size_t i = append_plain(input, first_face, last_face, chunk); i < last_face;
+       i = append_plain(input, i + 1, last_face, chunk)) {
     const auto number = static_cast<uint32_t>(i);
     const Face& face = mesh.faces[i];
     if (!is_valid(mesh, face, n_materials)) {
@@ -133,6 +141,41 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
   }
   flush(input, chunk);
   fill_bins(chunk);
+}
+
+// What process() does for valid triangles without corners beyond the clipping planes, which is most of them, from
+// `face` on; the first face that is none.
+size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_face, Chunk& chunk) const {
+  const Mesh& mesh = *input.mesh;
+  const size_t n_materials = input.scene->materials.size(), n_vertices = mesh.vertices.size(), given = face;
+  if (mesh.indices.size() < 3) return face;
+  const size_t last_first = mesh.indices.size() - 3;
+  const Face* const faces = mesh.faces.data();
+  const uint32_t *const indices = mesh.indices.data(), *const outcodes = outcodes_.data();
+  const ScreenVertex* const screen = screen_.data();
+  const std::vector<Surface>& surfaces = *input.surfaces[0];
+  uint32_t material = UINT32_MAX, drop_back = 0;
+  for (; face < last_face; ++face) {
+    const Face& at = faces[face];
+    if (at.count != 3 || at.material >= n_materials || at.first > last_first) break;
+    const uint32_t v0 = indices[at.first], v1 = indices[at.first + 1], v2 = indices[at.first + 2];
+    if (v0 >= n_vertices || v1 >= n_vertices || v2 >= n_vertices) break;
+    const uint32_t any = outcodes[v0] | outcodes[v1] | outcodes[v2], all = outcodes[v0] & outcodes[v1] & outcodes[v2];
+    if ((any & kNotFinite) != 0) break;
+    if ((all & kOutView) != 0) continue;
+    if ((any & kOutClip) != 0) break;
+    if (at.material != material) drop_back = surfaces[at.material].drop_back_faces ? 1 : 0;
+    material = at.material;
+    const int lane = chunk.n_pending++;
+    chunk.pending[lane] = {static_cast<uint32_t>(face), {v0, v1, v2}};
+    chunk.corners[lane][0] = screen + v0;
+    chunk.corners[lane][1] = screen + v1;
+    chunk.corners[lane][2] = screen + v2;
+    chunk.drop_back |= drop_back << lane;
+    if (lane + 1 == kSetupLanes) flush(input, chunk);
+  }
+  chunk.stats.triangles_submitted += face - given;
+  return face;
 }
 
 void DrawList::process_polygon(const FrameInput& input, uint32_t face_number, Chunk& chunk) {
@@ -197,24 +240,12 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   if (n == 0) return;
   RasterTriangle* stored = chunk.triangles.allocate(kSetupLanes);
   const SetupMasks masks = input.kernels->front.setup_triangles(rules_, n, chunk.corners, chunk.drop_back, stored);
-  const auto n_drawn = static_cast<size_t>(std::popcount(masks.drawn));
+  const auto n_drawn = count_lanes(masks.drawn);
   chunk.triangles.release(kSetupLanes - n_drawn);
-  chunk.stats.triangles_dropped += static_cast<uint64_t>(std::popcount(masks.degenerate));
+  chunk.stats.triangles_dropped += count_lanes(masks.degenerate);
+  if (n_drawn > 0) attach(input, masks, stored, chunk);
   chunk.n_pending = 0;
   chunk.drop_back = 0;
-  Candidate candidate;
-  uint32_t kept = kept_normals(input, masks, chunk);
-  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, kept >>= 1) {
-    const int lane = std::countr_zero(left);
-    const PendingTriangle& triangle = chunk.pending[lane];
-    const bool front = (masks.front >> lane & 1) != 0;
-    if (attach_plain(input, triangle, front, (kept & 1) != 0, chunk.attributes, *stored)) {
-      list_in_tiles(input, *stored++, chunk);
-    } else {
-      fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
-      store(input, candidate, nullptr, front, chunk, *stored++);
-    }
-  }
 }
 
 void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes,
@@ -271,13 +302,17 @@ void DrawList::fill_bins(Chunk& chunk) const {
   for (const TilePair& pair : chunk.pairs) chunk.bins[chunk.bin_start[pair.tile + 1]++] = pair.triangle;
 }
 
-void DrawList::triangles_of(int tile, std::vector<const RasterTriangle*>& out) const {
-  out.clear();
+std::span<const RasterTriangle* const> DrawList::triangles_of(int tile,
+                                                              std::vector<const RasterTriangle*>& memory) const {
   const auto t = static_cast<size_t>(tile);
-  for (size_t c = 0; c < n_chunks_; ++c) {
-    const Chunk& chunk = chunks_[c];
-    out.insert(out.end(), chunk.bins.begin() + chunk.bin_start[t], chunk.bins.begin() + chunk.bin_start[t + 1]);
-  }
+  const auto part = [&](const Chunk& chunk) {
+    return std::span<const RasterTriangle* const>(chunk.bins.data() + chunk.bin_start[t],
+                                                  chunk.bins.data() + chunk.bin_start[t + 1]);
+  };
+  if (n_chunks_ == 1) return part(chunks_[0]);
+  memory.clear();
+  for (size_t c = 0; c < n_chunks_; ++c) memory.insert(memory.end(), part(chunks_[c]).begin(), part(chunks_[c]).end());
+  return memory;
 }
 
 }  // namespace pac::raster

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/kernels/kernels.h"
@@ -74,8 +75,9 @@ class DrawList {
 
   int tiles_x() const { return tiles_x_; }
   int tiles_y() const { return tiles_y_; }
-  // Replaces `out` by the triangles that may touch the tile, in scene order.
-  void triangles_of(int tile, std::vector<const RasterTriangle*>& out) const;
+  // The triangles that may touch the tile, in scene order; they may stand in `memory`.
+  [[nodiscard]] std::span<const RasterTriangle* const> triangles_of(int tile,
+                                                                    std::vector<const RasterTriangle*>& memory) const;
 
  private:
   struct TilePair {
@@ -106,10 +108,12 @@ class DrawList {
   };
   void transform(const FrameInput& input, ThreadPool& pool);
   void process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk);
+  size_t append_plain(const FrameInput& input, size_t face, size_t last_face, Chunk& chunk) const;
   void process_polygon(const FrameInput& input, uint32_t face_number, Chunk& chunk);
   void process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk);
   void process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes, Chunk& chunk);
   void flush(const FrameInput& input, Chunk& chunk) const;
+  void attach(const FrameInput& input, const SetupMasks& masks, RasterTriangle* stored, Chunk& chunk) const;
   void store(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners, bool front,
              Chunk& chunk, RasterTriangle& triangle) const;
   bool is_unseen(const Face& face, const uint32_t* indices, bool drop_back_faces) const;

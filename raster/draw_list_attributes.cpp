@@ -9,6 +9,29 @@
 namespace pac::raster {
 namespace {
 
+// Records of unlit surfaces without other attributes, from the vertices.
+inline void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3],
+                               float record[9]) {
+  const uint8_t* const colors[3] = {vertices[order[0]]->color, vertices[order[1]]->color, vertices[order[2]]->color};
+  for (int c = 0; c < 3; ++c) {
+    const float a0 = static_cast<float>(colors[0][c]) * surface.mean[c];
+    record[3 * c] = a0;
+    record[3 * c + 1] = static_cast<float>(colors[1][c]) * surface.mean[c] - a0;
+    record[3 * c + 2] = static_cast<float>(colors[2][c]) * surface.mean[c] - a0;
+  }
+}
+
+// Of surfaces lit at corners, from what light_points() gave.
+inline void write_lit_record(const float* const lit[3], const int order[3], float record[9]) {
+  const float *const corner0 = lit[order[0]], *const corner1 = lit[order[1]], *const corner2 = lit[order[2]];
+  for (int c = 0; c < 3; ++c) {
+    const float a0 = corner0[c] + corner0[c + 3];
+    record[3 * c] = a0;
+    record[3 * c + 1] = (corner1[c] + corner1[c + 3]) - a0;
+    record[3 * c + 2] = (corner2[c] + corner2[c + 3]) - a0;
+  }
+}
+
 // Stores the renderings' attributes with the triangle. `front` exchanges corners 1 and 2, as setup_triangle did.
 // corners: null for a triangle that was not clipped.
 void attach_attributes(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners,
@@ -94,28 +117,9 @@ uint32_t DrawList::kept_normals(const FrameInput& input, const SetupMasks& masks
   return whole & input.kernels->front.keeps_normals(n, vertices, front);
 }
 
-// What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
-// False: it does, and the triangle is not complete.
-bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front, bool keeps_normals,
-                            Arena<float>& arena, RasterTriangle& triangle) const {
-  if (input.previous_clip != nullptr) return false;
-  const uint32_t material = input.mesh->faces[pending.face].material;
-  triangle.id = pending.face + 1;
-  for (int r = 0; r < 2; ++r) {
-    const bool drawn = input.surfaces[r] != nullptr;
-    triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
-    triangle.attributes[r] = nullptr;
-    if (!drawn || !input.wants_attributes) continue;
-    triangle.attributes[r] = plain_record(input, r, pending, front, keeps_normals, arena);
-    if (triangle.attributes[r] == nullptr) return false;
-  }
-  triangle.attributes[2] = nullptr;
-  return true;
-}
-
 // The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
-const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, bool front,
-                                    bool keeps_normals, Arena<float>& arena) const {
+inline const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending,
+                                           bool front, bool keeps_normals, Arena<float>& arena) const {
   const Mesh& mesh = *input.mesh;
   const Face& face = mesh.faces[pending.face];
   const Surface& surface = (*input.surfaces[rendering])[face.material];
@@ -142,6 +146,42 @@ const float* DrawList::plain_record(const FrameInput& input, int rendering, cons
   float* const record = arena.allocate(9);
   write_lit_record(lit, order, record);
   return record;
+}
+
+// What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
+// False: it does, and the triangle is not complete.
+inline bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front,
+                                   bool keeps_normals, Arena<float>& arena, RasterTriangle& triangle) const {
+  if (input.previous_clip != nullptr) return false;
+  const uint32_t material = input.mesh->faces[pending.face].material;
+  triangle.id = pending.face + 1;
+  for (int r = 0; r < 2; ++r) {
+    const bool drawn = input.surfaces[r] != nullptr;
+    triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
+    triangle.attributes[r] = nullptr;
+    if (!drawn || !input.wants_attributes) continue;
+    triangle.attributes[r] = plain_record(input, r, pending, front, keeps_normals, arena);
+    if (triangle.attributes[r] == nullptr) return false;
+  }
+  triangle.attributes[2] = nullptr;
+  return true;
+}
+
+// Attributes of the drawn triangles of those that wait, and their tiles.
+void DrawList::attach(const FrameInput& input, const SetupMasks& masks, RasterTriangle* stored, Chunk& chunk) const {
+  Candidate candidate;
+  uint32_t kept = kept_normals(input, masks, chunk);
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, kept >>= 1) {
+    const int lane = std::countr_zero(left);
+    const PendingTriangle& triangle = chunk.pending[lane];
+    const bool front = (masks.front >> lane & 1) != 0;
+    if (attach_plain(input, triangle, front, (kept & 1) != 0, chunk.attributes, *stored)) {
+      list_in_tiles(input, *stored++, chunk);
+    } else {
+      fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
+      store(input, candidate, nullptr, front, chunk, *stored++);
+    }
+  }
 }
 
 // Completes a triangle that is set up and lists it in its tiles. corners: null for a triangle that was not clipped.

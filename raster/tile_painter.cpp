@@ -22,7 +22,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   const int tile_x = tile % input.draw_list->tiles_x(), tile_y = tile / input.draw_list->tiles_x();
   const Area area{tile_x * kTileSize, tile_y * kTileSize, std::min(kTileSize, input.width - tile_x * kTileSize),
                   std::min(kTileSize, input.height - tile_y * kTileSize)};
-  input.draw_list->triangles_of(tile, triangles_);
+  triangles_ = input.draw_list->triangles_of(tile, listed_);
   if (triangles_.empty()) return write_background(input, area);
   find_transparent(input);
   const int n_renderings = input.surfaces[1] != nullptr ? 2 : 1;

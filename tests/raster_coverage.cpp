@@ -178,9 +178,8 @@ TEST_CASE("clipping at the near plane and the guard band opens no cracks and cov
     REQUIRE(list.build(input, pool).ok());
     HitCounter hits(kSide, pattern);
     for (int tile = 0; tile < list.tiles_x() * list.tiles_y(); ++tile) {
-      std::vector<const RasterTriangle*> triangles;
-      list.triangles_of(tile, triangles);
-      for (const RasterTriangle* t : triangles)
+      std::vector<const RasterTriangle*> memory;
+      for (const RasterTriangle* t : list.triangles_of(tile, memory))
         hits.add(input.kernels->tile, *t, tile % list.tiles_x(), tile / list.tiles_x());
     }
     REQUIRE(hits.samples_hit(1) == hits.samples());

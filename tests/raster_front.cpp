@@ -96,6 +96,7 @@ void require_equal(const RasterTriangle& a, const RasterTriangle& b) {
   REQUIRE(std::memcmp(depth_a, depth_b, sizeof depth_a) == 0);
   REQUIRE(std::memcmp(a.w, b.w, sizeof a.w) == 0);
   REQUIRE(a.shift == b.shift);
+  REQUIRE(a.covered == b.covered);
   REQUIRE(std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0);
 }
 

@@ -66,7 +66,8 @@ struct FrontKernels {
 
   // Sets up n <= kSetupLanes triangles: all fields of RasterTriangle but id, state and attributes. Not drawn are those
   // without area, those in `drop_back` (bits) that are clockwise on the screen, and those that no sample can see: whose
-  // bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels none of whose samples is inside.
+  // bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels none of whose samples is inside; those
+  // that have some of such samples inside say which in `covered`.
   // `out`: room for n; the drawn ones, in order.
   SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const ScreenVertex* const (*corners)[3],
                                 uint32_t drop_back, RasterTriangle* out);

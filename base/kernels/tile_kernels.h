@@ -23,20 +23,21 @@ constexpr int kMaxKernelLights = 16;  // lights that one scene may have
 // vanishes on that edge; with (X, Y) = sample - corner 0:
 //   E1 = a[1] X + b[1] Y,  E2 = a[2] X + b[2] Y,  E0 = area2 - E1 - E2,
 // exactly, in units of 2^-16 square pixels. |a|, |b| <= 2^23 (guard band), |E| < 2^52.
-// Two cache lines: all of the first and a third of the second is what rasterizing reads.
+// Two cache lines: the first is what rasterizing reads of small triangles, and most of what it reads of others.
 struct alignas(64) RasterTriangle {
   int32_t x0, y0;                      // corner 0
-  int32_t a[3], b[3];                  // change of E_i by 1/256 pixel
-  int64_t area2;                       // E0 + E1 + E2 > 0
   int16_t min_x, min_y, max_x, max_y;  // pixels that some sample position of which may be inside; inclusive, >= 0
   uint8_t exclude[3];                  // 1 where a sample on edge i is outside (not a top or left edge)
-  uint8_t shift;                       // smallest k >= 0 with area2 >> k < 2^31
+  uint8_t covered;  // bit x + 2 y: the sample of pixel (min_x + x, min_y + y) is inside; 0 where not all are told so
   float z0, dzdx, dzdy, z_min, z_max;  // window depth: z0 + dzdy Y + dzdx X, clamped to the corners' range
+  int32_t a[3], b[3];                  // change of E_i by 1/256 pixel
+  int64_t area2;                       // E0 + E1 + E2 > 0
   float w[3];                          // 1/w of the corners divided by the largest of them
   uint32_t id;                         // 1 + face number
   uint32_t state[2];                   // per rendering: how it is shaded
   // Per rendering: a0, a1 - a0, a2 - a0 for each attribute. [2]: clip coordinates in the previous frame.
   const float* attributes[3];
+  uint8_t shift;  // smallest k >= 0 with area2 >> k < 2^31
 };
 static_assert(sizeof(RasterTriangle) == 128);
 
@@ -180,8 +181,8 @@ struct TileKernels {
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
 
-  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1. ids: null where depth is all that is
-  // wanted.
+  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1. ids: null where depth is all that
+  // is wanted.
   void (*rasterize_all)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
                         uint32_t* ids);
 
