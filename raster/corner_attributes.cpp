@@ -94,6 +94,26 @@ void set_tangents(const Surface& surface, const Vertex* const vertices[3], Corne
   for (int i = 0; i < 3; ++i) std::copy_n(both, 6, out.value[i] + surface.layout.tangents);
 }
 
+struct LitPoint {
+  CornerNormal normal;
+  const Vertex* vertex;
+};
+
+void light_corners(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]) {
+  LitRows rows;
+  for (int i = 0; i < (n + 7) / 8 * 8; ++i) {
+    const LitPoint& point = points[std::min(i, n - 1)];
+    rows.normal[0][i] = point.normal.x;
+    rows.normal[1][i] = point.normal.y;
+    rows.normal[2][i] = point.normal.z;
+    for (int c = 0; c < 3; ++c) {
+      rows.position[c][i] = sanitized(point.vertex->position[c], 0x1p60f);
+      rows.color[c][i] = static_cast<float>(point.vertex->color[c]);
+    }
+  }
+  light_points(surface, kernels, n, rows, out);
+}
+
 void set_lit_colors(const Surface& surface, int corner, const float* lit, CornerAttributes& out) {
   float* value = out.value[corner];
   for (int c = 0; c < 3; ++c) {
@@ -117,10 +137,6 @@ void set_vertex_colors(const Surface& surface, const Vertex* const vertices[3], 
 
 }  // namespace
 
-bool own_normal(const Vertex& vertex, CornerNormal& normal) {
-  return usable_normal(vertex, normal);
-}
-
 FaceNormal unit_normal(const FaceNormal& normal) {
   const double x = sanitized(normal.x, 3e38f), y = sanitized(normal.y, 3e38f), z = sanitized(normal.z, 3e38f);
   const double length = std::sqrt((x * x + y * y) + z * z);
@@ -128,33 +144,22 @@ FaceNormal unit_normal(const FaceNormal& normal) {
   return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
 }
 
-void light_points(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]) {
-  alignas(32) float normal[3][kBatchLanes], position[3][kBatchLanes], color[3][kBatchLanes], specular[3][kBatchLanes];
+void light_points(const Surface& surface, const TileKernels& kernels, int n, LitRows& rows, float (*out)[6]) {
   const int n_groups = (n + 7) / 8;
-  for (int i = 0; i < 8 * n_groups; ++i) {
-    const LitPoint& point = points[std::min(i, n - 1)];
-    normal[0][i] = point.normal.x;
-    normal[1][i] = point.normal.y;
-    normal[2][i] = point.normal.z;
-    for (int c = 0; c < 3; ++c) {
-      position[c][i] = sanitized(point.vertex->position[c], 0x1p60f);
-      color[c][i] = static_cast<float>(point.vertex->color[c]);
-    }
-  }
   alignas(32) float visibility[kMaxKernelLights + 1][kBatchLanes];
   if (surface.shadows != nullptr) {
     uint8_t masks[kBatchPacks];
     std::fill_n(masks, n_groups, uint8_t{0xFF});
     masks[n_groups - 1] = static_cast<uint8_t>(0xFF >> (8 * n_groups - n));
     cast_shadows(*surface.shadows, kernels, surface.lighting, n_groups, masks, {0, surface.shadows->samples.count},
-                 normal[0], position[0], visibility[0]);
+                 rows.normal[0], rows.position[0], visibility[0]);
   }
-  kernels.light(surface.lighting, n, normal[0], position[0], surface.shadows != nullptr ? visibility[0] : nullptr,
-                color[0], specular[0]);
+  kernels.light(surface.lighting, n, rows.normal[0], rows.position[0],
+                surface.shadows != nullptr ? visibility[0] : nullptr, rows.color[0], rows.specular[0]);
   for (int i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c) {
-      out[i][c] = color[c][i];
-      out[i][c + 3] = surface.lighting.has_specular != 0 ? specular[c][i] : 0.0f;
+      out[i][c] = rows.color[c][i];
+      out[i][c + 3] = surface.lighting.has_specular != 0 ? rows.specular[c][i] : 0.0f;
     }
 }
 
@@ -180,7 +185,7 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
     const CornerNormal flat{unit.x * side, unit.y * side, unit.z * side};
     std::fill_n(normals, 3, flat);
     const LitPoint point{flat, &first};
-    light_points(surface, kernels, 1, &point, lit);
+    light_corners(surface, kernels, 1, &point, lit);
     for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, lit[0], out);
   } else {
     const bool all_own = seen_normals(vertices, face, front, normals);
@@ -190,7 +195,7 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
     } else {
       if (!all_cached) {
         const LitPoint points[3] = {{normals[0], vertices[0]}, {normals[1], vertices[1]}, {normals[2], vertices[2]}};
-        light_points(surface, kernels, 3, points, lit);
+        light_corners(surface, kernels, 3, points, lit);
       }
       for (int i = 0; i < 3; ++i) set_lit_colors(surface, i, all_cached ? cached[i] : lit[i], out);
     }

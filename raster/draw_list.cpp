@@ -93,7 +93,7 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
   transform(input, pool);
   for (int r = 0; r < 2; ++r)
     if (input.surfaces[r] != nullptr && input.wants_attributes)
-      lit_[r].prepare(*input.mesh, *input.surfaces[r], input.kernels->tile, outcodes_.data(), pool);
+      lit_[r].prepare(*input.mesh, *input.surfaces[r], *input.kernels, outcodes_.data(), pool);
 
   // Chunks only divide the work: triangles keep the order of the scene whatever their number.
   const size_t n_faces = input.mesh->faces.size();

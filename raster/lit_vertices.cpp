@@ -1,6 +1,7 @@
 #include "raster/lit_vertices.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "raster/corner_attributes.h"
 
@@ -10,14 +11,19 @@ namespace {
 constexpr uint32_t kNone = UINT32_MAX;
 constexpr size_t kRange = 4096;  // vertices that one thread takes at a time
 
-// Points that wait for the kernel, all of one material.
+// Vertices that wait for the kernel, all of one material.
 struct Batch {
   uint32_t material = kNone;
   int count = 0;
-  LitPoint points[kBatchLanes];
-  size_t vertices[kBatchLanes];
+  uint32_t vertices[kBatchLanes];
+  const float* at[kBatchLanes];
+  LitRows rows;
   float colors[kBatchLanes][6];
 };
+
+static_assert(sizeof(Vertex) % sizeof(float) == 0 && offsetof(Vertex, position) == 0 &&
+                  offsetof(Vertex, normal) == 12 && offsetof(Vertex, color) == 32,
+              "as the kernels read them");
 
 }  // namespace
 
@@ -39,50 +45,51 @@ void LitVertices::assign_materials(const Mesh& mesh, const std::vector<Surface>&
   }
 }
 
-void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-                              const uint32_t* outcodes, size_t first, size_t last) {
+void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels,
+                              const float eye[3], const uint32_t* outcodes, size_t first, size_t last) {
   Batch batch;
   const auto flush = [&] {
     if (batch.count == 0) return;
-    light_points(surfaces[batch.material], kernels, batch.count, batch.points, batch.colors);
-    for (int i = 0; i < batch.count; ++i) std::copy_n(batch.colors[i], 6, &colors_[6 * batch.vertices[i]]);
+    LitRows& rows = batch.rows;
+    kernels.front.gather_vertices(batch.count, batch.at, rows.normal[0], rows.position[0], rows.color[0]);
+    light_points(surfaces[batch.material], kernels.tile, batch.count, rows, batch.colors);
+    for (int i = 0; i < batch.count; ++i) std::copy_n(batch.colors[i], 6, &colors_[6 * size_t{batch.vertices[i]}]);
     batch.count = 0;
   };
-  for (size_t v = first; v < last; ++v) {
-    const uint32_t material = materials_[v];
-    if (material == kNone) continue;
-    const Vertex& vertex = mesh.vertices[v];
-    LitPoint point{{}, &vertex};
-    const float* eye = surfaces[material].lighting.eye;
-    const bool usable = (outcodes[v] & (kOutView | kNotFinite)) == 0 && own_normal(vertex, point.normal);
-    const float towards_eye =
-        (point.normal.x * (eye[0] - vertex.position[0]) + point.normal.y * (eye[1] - vertex.position[1])) +
-        point.normal.z * (eye[2] - vertex.position[2]);
-    if (!usable || !(towards_eye >= 0)) {  // likely not drawn, or lit from its other side
-      materials_[v] = kNone;
-      continue;
+  for (size_t eight = first; eight < last; eight += 8) {
+    const auto n = static_cast<int>(std::min<size_t>(8, last - eight));
+    const uint32_t facing =
+        kernels.front.faces_eye(eye, mesh.vertices[eight].position, sizeof(Vertex) / sizeof(float), n);
+    for (int k = 0; k < n; ++k) {
+      const size_t v = eight + static_cast<size_t>(k);
+      const uint32_t material = materials_[v];
+      if (material == kNone) continue;
+      if ((facing >> k & 1) == 0 || (outcodes[v] & (kOutView | kNotFinite)) != 0) {
+        materials_[v] = kNone;  // likely not drawn, or lit from its other side
+        continue;
+      }
+      if (material != batch.material || batch.count == kBatchLanes) flush();
+      batch.material = material;
+      batch.vertices[batch.count] = static_cast<uint32_t>(v);
+      batch.at[batch.count++] = mesh.vertices[v].position;
     }
-    if (material != batch.material || batch.count == kBatchLanes) flush();
-    batch.material = material;
-    batch.vertices[batch.count] = v;
-    batch.points[batch.count++] = point;
   }
   flush();
 }
 
-void LitVertices::prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
+void LitVertices::prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels,
                           const uint32_t* outcodes, ThreadPool& pool) {
   n_materials_ = 0;
-  const bool wanted = std::any_of(surfaces.begin(), surfaces.end(),
-                                  [](const Surface& surface) { return surface.lit == Surface::Lit::per_corner; });
-  if (!wanted) return;
+  const auto lit = std::find_if(surfaces.begin(), surfaces.end(),
+                                [](const Surface& surface) { return surface.lit == Surface::Lit::per_corner; });
+  if (lit == surfaces.end()) return;
   n_materials_ = surfaces.size();
   assign_materials(mesh, surfaces);
   const size_t n = mesh.vertices.size();
   if (colors_.size() < 6 * n) colors_.resize(6 * n);
   pool.for_each(static_cast<int64_t>((n + kRange - 1) / kRange), [&](int64_t range) {
     const size_t first = static_cast<size_t>(range) * kRange;
-    light_range(mesh, surfaces, kernels, outcodes, first, std::min(first + kRange, n));
+    light_range(mesh, surfaces, kernels, lit->lighting.eye, outcodes, first, std::min(first + kRange, n));
   });
 }
 

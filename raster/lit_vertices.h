@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/kernels/kernels.h"
 #include "base/parallel.h"
 #include "raster/clip.h"
 #include "raster/surface.h"
@@ -15,8 +16,8 @@ class LitVertices {
  public:
   // Lights the vertices in view whose own normal is on the eye's side, each with the material of the last face that
   // names it. Does nothing where no material is lit at corners. Faces need not be valid. `outcodes`: one a vertex.
-  void prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
-               const uint32_t* outcodes, ThreadPool& pool);
+  void prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels, const uint32_t* outcodes,
+               ThreadPool& pool);
 
   // Color and specular color (six floats) of a vertex under a material by its own normal, or null: light it there.
   const float* find(uint32_t vertex, uint32_t material) const {
@@ -25,7 +26,7 @@ class LitVertices {
 
  private:
   void assign_materials(const Mesh& mesh, const std::vector<Surface>& surfaces);
-  void light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const TileKernels& kernels,
+  void light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels, const float eye[3],
                    const uint32_t* outcodes, size_t first, size_t last);
 
   size_t n_materials_ = 0;           // 0: nothing prepared

@@ -203,6 +203,42 @@ TEST_CASE("keeps_normals: every instruction set says what the scalar one says, a
   CHECK(kept_count >= 100 * set_count);
 }
 
+TEST_CASE("faces_eye and gather_vertices: every instruction set gives the scalar answers, vertices of any kind") {
+  constexpr int kStride = 9;
+  int facing_count = 0, set_count = 0;
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    ++set_count;
+    Random random(78);
+    for (int round = 0; round < 200; ++round) {
+      const NormalTriangles input(random);
+      const int n = 1 + static_cast<int>(random.bits() % 24);
+      std::vector<float> vertices(static_cast<size_t>(kStride * n));
+      const float* at[24];
+      for (int i = 0; i < n; ++i) {
+        float* const to = &vertices[static_cast<size_t>(kStride * i)];
+        std::copy_n(input.vertices[i / 3][i % 3], 8, to);
+        const uint32_t color = random.bits();
+        std::memcpy(to + 8, &color, 4);
+        at[i] = to;
+      }
+      const float eye[3] = {random.between(-9, 9), random.between(-9, 9), random.between(-9, 9)};
+      const int few = std::min(n, 8);
+      const uint32_t facing = scalar.front.faces_eye(eye, vertices.data(), kStride, few);
+      REQUIRE(facing == table.front.faces_eye(eye, vertices.data(), kStride, few));
+      facing_count += std::popcount(facing);
+      static float expected[9 * kBatchLanes], actual[9 * kBatchLanes];
+      const auto gather = [&](const Kernels& kernels, float* rows) {
+        std::fill_n(rows, 9 * kBatchLanes, 7.0f);
+        kernels.front.gather_vertices(n, at, rows, rows + 3 * kBatchLanes, rows + 6 * kBatchLanes);
+      };
+      gather(scalar, expected);
+      gather(table, actual);
+      REQUIRE(std::memcmp(expected, actual, sizeof expected) == 0);
+    }
+  });
+  CHECK(facing_count >= 100 * set_count);
+}
+
 TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that it keeps cover one") {
   for (const Isa isa : {Isa::scalar, best_isa()}) {
     Random random(47);

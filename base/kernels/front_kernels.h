@@ -76,6 +76,16 @@ struct FrontKernels {
   // plane: the side where its corners are counter-clockwise, or the other where bit k of `front` is 0. vertices[k][i]:
   // three floats of position, three of a normal of any length, and two more that are readable.
   uint32_t (*keeps_normals)(int n, const float* const (*vertices)[3], uint32_t front);
+
+  // Vertices to be lit by their own normals as they are. Vertex i is at vertices + i * stride: three floats of
+  // position, three of the normal and two more that are readable. Bit k of n <= 8: no component of the normal is beyond
+  // 2^40 nor of the position beyond 2^60, the normal's squared length is at least 2^-100 and it does not point away
+  // from `eye`.
+  uint32_t (*faces_eye)(const float eye[3], const float* vertices, size_t stride, int n);
+
+  // Rows of kBatchLanes for TileKernels::light() from n <= kBatchLanes such vertices, rounded up to 8 (the last one is
+  // repeated): 3 of normals, 3 of positions and 3 of colors, the first three of four bytes 8 floats after the position.
+  void (*gather_vertices)(int n, const float* const* vertices, float* normal, float* position, float* color);
 };
 
 // front_scalar.cpp; the others stand beside the tile kernels, whose operations they use.

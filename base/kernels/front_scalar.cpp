@@ -1,5 +1,6 @@
 // The front end in scalar code; what it computes is in front_one_simd.inc.
 #include <cmath>
+#include <cstring>
 
 #include "base/kernels/front_kernels.h"
 
@@ -50,12 +51,41 @@ uint32_t keeps_normals(int n, const float* const (*vertices)[3], uint32_t front)
   return kept;
 }
 
+uint32_t faces_eye(const float eye[3], const float* vertices, size_t stride, int n) {
+  uint32_t facing = 0;
+  for (int k = 0; k < n; ++k) {
+    const float *const p = vertices + static_cast<size_t>(k) * stride, *const normal = p + 3;
+    bool usable = true;
+    for (int c = 0; c < 3; ++c)
+      usable = usable && std::fabs(p[c]) <= 0x1p60f && std::fabs(normal[c]) <= 0x1p40f;  // false for NaN
+    const float squared = (normal[0] * normal[0] + normal[1] * normal[1]) + normal[2] * normal[2];
+    const float towards = (normal[0] * (eye[0] - p[0]) + normal[1] * (eye[1] - p[1])) + normal[2] * (eye[2] - p[2]);
+    facing |= (usable && squared >= 0x1p-100f && towards >= 0 ? 1u : 0u) << k;
+  }
+  return facing;
+}
+
+void gather_vertices(int n, const float* const* vertices, float* normal, float* position, float* color) {
+  for (int i = 0; i < (n + 7) / 8 * 8; ++i) {
+    const float* const p = vertices[i < n ? i : n - 1];
+    uint8_t bytes[4];
+    std::memcpy(bytes, p + 8, 4);
+    for (int c = 0; c < 3; ++c) {
+      position[c * kBatchLanes + i] = p[c];
+      normal[c * kBatchLanes + i] = p[3 + c];
+      color[c * kBatchLanes + i] = static_cast<float>(bytes[c]);
+    }
+  }
+}
+
 }  // namespace
 
 void fill_front_scalar(FrontKernels& table) {
   table.transform_vertices = transform_vertices;
   table.setup_triangles = setup_one_by_one;
   table.keeps_normals = keeps_normals;
+  table.faces_eye = faces_eye;
+  table.gather_vertices = gather_vertices;
 }
 
 }  // namespace pac
