@@ -102,6 +102,27 @@ TEST_CASE("a 20 000 x 20 000 image is drawn in the memory of its targets") {
   for (size_t x = 0; x < kLong; ++x) REQUIRE(row[x] == (x < kLong - 10 ? 0u : 1u));
 }
 
+TEST_CASE("ten million triangles: all are looked at, in memory that grows with those that are drawn") {
+  constexpr size_t kFaces = 10'000'000;
+  Scene scene = unlit_scene();
+  scene.materials[0].two_sided = false;
+  add_triangle(scene, {{-0.5f, -0.5f, 0}, {0, 0.5f, 0}, {0.5f, -0.5f, 0}}, 0);  // seen from its back
+  add_triangle(scene, {{-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0.5f, 0}}, 0);
+  std::vector<Face>& faces = scene.mesh.faces;
+  const Face drawn = faces[1];
+  faces.assign(kFaces, faces[0]);
+  for (size_t i = 999'999; i < kFaces; i += 1'000'000) faces[i] = drawn;
+  auto renderer = Renderer::create(32, 32);
+  IdImage id(32, 32);
+  RenderQuality quality;
+  quality.cull_back_faces = true;
+  const auto stats = renderer->render(scene, Camera{}, quality, {{}, {}, id.view()});
+  REQUIRE(stats.ok());
+  CHECK(stats->triangles_submitted == kFaces);
+  CHECK(stats->triangles_drawn == 10);
+  CHECK(*id.pixel(16, 16) == 1'000'000);  // of equal depths the first
+}
+
 TEST_CASE("more than 2^16 materials: each face has its own") {
   constexpr uint32_t kMaterials = 70000;
   Scene scene;
