@@ -20,6 +20,10 @@ class ModelFlow {
   const Flow& find(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
                    std::span<const glm::mat4> objects);
 
+  // The same row by row: once for the frame, then each row.
+  void prepare(const raster::Camera& camera, std::span<const glm::mat4> objects);
+  void find_row(PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out) const;
+
   // The frame to which find() leads.
   void remember(const raster::Camera& camera, std::span<const glm::mat4> objects);
 
@@ -30,6 +34,8 @@ class ModelFlow {
   Isa isa_;
   raster::Camera camera_;
   Transforms objects_;
+  std::vector<Reprojection> ways_;
+  std::vector<uint32_t> way_of_id_;  // empty: all go ways_[0]
   Flow flow_;
 };
 

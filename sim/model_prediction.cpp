@@ -16,6 +16,19 @@ PlaneView<const uint8_t> plane(const Frame420& frame, int component) {
   return component == 0 ? frame.y.view() : component == 1 ? frame.cb.view() : frame.cr.view();
 }
 
+PlaneView<uint8_t> plane(Frame420& frame, int component) {
+  return component == 0 ? frame.y.view() : component == 1 ? frame.cb.view() : frame.cr.view();
+}
+
+// What moves the faces, as surfaces of keys. Two that move alike need not be told apart: depth does that.
+std::vector<uint32_t> keys_of(std::span<const uint32_t> movers) {
+  constexpr uint32_t kTornKey = 0xFFFF;
+  std::vector<uint32_t> keys;
+  for (const uint32_t mover : movers) keys.push_back(mover == kTorn ? kTornKey : mover + 1);
+  if (!keys.empty()) keys[0] = 0;
+  return keys;
+}
+
 }  // namespace
 
 void BorderedPlane::extend() {
@@ -52,6 +65,7 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
     : width_(width),
       height_(height),
       surfaces_(std::move(surfaces)),
+      keys_(keys_of(movers)),
       isa_(isa),
       flow_(width, height, sample_x, sample_y, std::move(movers), isa),
       surface_(width, height),
@@ -69,30 +83,38 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
 }
 
 void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id) {
-  now_[0].set(depth, id, surfaces_, kernels_for(isa_)->warp);
+  const WarpKernels& kernels = kernels_for(isa_)->warp;
+  now_[0].set(depth, id, keys_, kernels);
   now_[1].set_half(now_[0]);
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) surface_.row(y)[x] = now_[0].row(y)[x] >> 16;
-  for (SurfaceMap& map : now_) map.find_smooth();
+  for (SurfaceMap& map : now_) map.find_smooth(kernels);
+  const auto next = [](int at, int size) { return at == size - 1 ? size : std::min((at & ~3) + 4, size - 1); };
+  for (int y = 0; y < height_; y = next(y, height_))
+    for (int x = 0; x < width_; x = next(x, width_)) {
+      const uint32_t shown = id.row(y)[x];
+      surface_.row(y)[x] = shown < surfaces_.size() ? surfaces_[shown] : 0;
+    }
 }
 
-void ModelPredictor::carry(bool chroma, const Flow& flow, const Frame420& base) {
-  const size_t level = chroma ? 1 : 0;
+void ModelPredictor::carry(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id) {
   const Kernels& kernels = *kernels_for(isa_);
-  RowCarrier carrier(now_[level], before_[level], flow, chroma, kernels);
-  const int width = kept_[level].width(), height = kept_[level].height();
+  RowCarrier luma(now_[0], before_[0], false, kernels), chroma(now_[1], before_[1], true, kernels);
+  const auto fetch = [&](RowCarrier& carrier, int component, int y) {
+    int16_t* carried = carried_[component].row(y);
+    carrier.fetch(kept_[component], carried);
+    kernels.warp.add_carried_row(plane(base, component).row(y), carried, static_cast<size_t>(kept_[component].width()),
+                                 plane(reference_, component).row(y));
+  };
   uint64_t found = 0;
-  for (int y = 0; y < height; ++y) {
-    carrier.find(y, kept_[level].stride());
-    found += carrier.found();
-    for (int component = chroma ? 1 : 0; component <= (chroma ? 2 : 0); ++component) {
-      GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
-      int16_t* carried = carried_[component].row(y);
-      std::memcpy(carried, carrier.fetch(kept_[component]), static_cast<size_t>(width) * sizeof(int16_t));
-      kernels.warp.add_carried_row(plane(base, component).row(y), carried, static_cast<size_t>(width), target.row(y));
-    }
+  for (int y = 0; y < height_; ++y) {
+    flow_.find_row(depth, id, y, luma.flow());
+    luma.find(y, kept_[0].stride());
+    found += luma.found();
+    fetch(luma, 0, y);
+    if (y % 2 != 0) continue;
+    chroma.find_half(y / 2, luma, kept_[1].stride());
+    for (const int component : {1, 2}) fetch(chroma, component, y / 2);
   }
-  if (!chroma) stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width) * height);
+  stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width_) * height_);
 }
 
 const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const float> depth,
@@ -102,15 +124,13 @@ const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const 
   map_surfaces(depth, id);
   stats_ = {};
   if (has_kept_) {
-    const Flow& flow = flow_.find(depth, id, camera, objects);
-    carry(false, flow, base);
-    carry(true, flow, base);
+    flow_.prepare(camera, objects);
+    carry(base, depth, id);
   } else {
     for (int component = 0; component < 3; ++component) {
       const PlaneView<const uint8_t> from = plane(base, component);
-      GrayImage& target = component == 0 ? reference_.y : component == 1 ? reference_.cb : reference_.cr;
       for (int y = 0; y < from.height; ++y) {
-        std::memcpy(target.row(y), from.row(y), static_cast<size_t>(from.width));
+        std::memcpy(plane(reference_, component).row(y), from.row(y), static_cast<size_t>(from.width));
         std::fill_n(carried_[component].row(y), from.width, int16_t{0});
       }
     }
@@ -126,7 +146,8 @@ void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> c
     BorderedPlane& kept = kept_[component];
     const int width = kept.width();
     for (int row = 0; row < kept.height(); ++row) {
-      const uint8_t *from = coded[component].row(row), *minus = plane(reference_, component).row(row);
+      const uint8_t* from = coded[component].row(row);
+      const uint8_t* minus = plane(reference_, component).row(row);
       const int16_t* carried = carried_[component].row(row);
       int16_t* to = kept.row(row);
       for (int x = 0; x < width; ++x) {

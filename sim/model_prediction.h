@@ -1,7 +1,7 @@
 // Model prediction: the difference that was decoded for the frame before, carried to where the model says that its
 // surfaces are now. Server and client run the same code on the same numbers.
 //
-//   depth, cameras, objects -> flow -> visibility (surface and depth) -> filter -> carried difference -> + base ->
+//   depth, cameras, objects -> flow -> visibility (object and depth) -> filter -> carried difference -> + base ->
 //   reference; carried difference + coded picture - reference -> difference, kept for the next frame
 // The base is the client's own rendering L (so that the reference predicts H itself), or gray (the paper's D form). All
 // in 4:2:0; chroma is carried at its own resolution. Differences have five bits below the point, so that what nothing
@@ -22,8 +22,8 @@
 
 namespace pac::sim {
 
-// Faces to surfaces: one number a material and object, so that differences flow across the edges of a mesh but not from
-// one material or object to another. Index = id of the rasterizer (face + 1); [0] is the background.
+// Faces to surfaces: one number a material and object, for what learns how surfaces are coded. Index = id of the
+// rasterizer (face + 1); [0] is the background.
 std::vector<uint32_t> surfaces_of(const raster::Scene& low);
 
 struct PredictionStats {
@@ -46,7 +46,8 @@ class ModelPredictor {
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr);
 
-  // Per pixel the surface that L shows in the frame whose reference was asked for last; until keep().
+  // The surface that L shows in the frame whose reference was asked for last, at columns and rows divisible by 4 and
+  // in the last of each; until keep().
   PlaneView<const uint32_t> surface() const { return surface_.view(); }
 
   // The kept difference: luma and chroma, in 1/32.
@@ -59,10 +60,10 @@ class ModelPredictor {
 
  private:
   void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id);
-  void carry(bool chroma, const Flow& flow, const Frame420& base);
+  void carry(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id);
 
   int width_, height_;
-  std::vector<uint32_t> surfaces_;
+  std::vector<uint32_t> surfaces_, keys_;  // by id; keys_: empty where nothing moves
   Isa isa_;
   bool has_kept_ = false;
   ModelFlow flow_;                 // to the frame whose reference was asked for last

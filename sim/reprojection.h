@@ -18,6 +18,12 @@ struct Flow {
   DepthImage u_before;
 };
 
+// One row of it.
+struct FlowRow {
+  int32_t *x_64, *y_64;
+  float* u_before;
+};
+
 // An object's vertices as a camera sees them; `world_from_object` is affine.
 struct MovedView {
   const raster::Camera& camera;
@@ -50,5 +56,9 @@ void reproject(const Reprojection& reprojection, PlaneView<const float> depth, F
 constexpr uint32_t kNoWay = UINT32_MAX;
 void reproject(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, PlaneView<const float> depth,
                PlaneView<const uint32_t> id, Flow& flow, Isa isa = best_isa());
+// Row y of it.
+void reproject_row(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id,
+                   PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out,
+                   Isa isa = best_isa());
 
 }  // namespace pac::sim

@@ -7,64 +7,57 @@
 
 namespace pac::sim {
 
-RowCarrier::RowCarrier(const SurfaceMap& now, const SurfaceMap& before, const Flow& flow, bool is_chroma,
-                       const Kernels& kernels)
-    : now_(now), before_(before), flow_(flow), is_chroma_(is_chroma), kernels_(kernels.warp) {
+RowCarrier::RowCarrier(const SurfaceMap& now, const SurfaceMap& before, bool is_chroma, const Kernels& kernels)
+    : now_(now), before_(before), is_chroma_(is_chroma), kernels_(kernels.warp) {
   const auto width = static_cast<size_t>(now.width());
-  if (is_chroma) {
-    x_64_.resize(width);
-    y_64_.resize(width);
-    u_before_.resize(width);
-  }
-  offset_.resize(width);
-  phase_x_.resize(width);
-  phase_y_.resize(width);
+  x_64_.resize(width);
+  y_64_.resize(width);
+  u_before_.resize(width);
   state_.resize(width + 8);  // to be read in words
   wanted_.resize(width);
-  picked_.resize(width);
-  absent_.resize(width);
   edges_.resize(width);
   edge_points_.resize(width);
   edge_samples_.resize(width);
 }
 
 // A chroma sample lies between four luma samples; half the position of the first of them is its own.
-void RowCarrier::halve_flow(int y) {
-  const int32_t *x_64 = flow_.x_64.row(2 * y), *y_64 = flow_.y_64.row(2 * y);
-  const float* u_before = flow_.u_before.row(2 * y);
+void RowCarrier::find_half(int y, const RowCarrier& luma, ptrdiff_t plane_stride) {
   const size_t n = x_64_.size();
+  const int32_t *x_64 = luma.x_64_.data(), *y_64 = luma.y_64_.data();
+  const float* u_before = luma.u_before_.data();
   int32_t *half_x = x_64_.data(), *half_y = y_64_.data();
   float* u = u_before_.data();
   for (size_t i = 0; i < n; ++i) half_x[i] = x_64[2 * i] >> 1;
   for (size_t i = 0; i < n; ++i) half_y[i] = y_64[2 * i] >> 1;
   for (size_t i = 0; i < n; ++i) u[i] = u_before[2 * i];
+  find(y, plane_stride);
 }
 
 void RowCarrier::find(int y, ptrdiff_t plane_stride) {
-  if (is_chroma_) halve_flow(y);
-  const int32_t* x_64 = is_chroma_ ? x_64_.data() : flow_.x_64.row(y);
-  const int32_t* y_64 = is_chroma_ ? y_64_.data() : flow_.y_64.row(y);
-  const float* u_before = is_chroma_ ? u_before_.data() : flow_.u_before.row(y);
-  const size_t n = offset_.size();
-  const WarpPlaces places{offset_.data(), phase_x_.data(), phase_y_.data(), state_.data(), wanted_.data()};
-  const size_t n_special =
-      kernels_.place_points(before_.view(), plane_stride, x_64, y_64, u_before, now_.row(y), n, places);
+  const size_t n = wanted_.size();
+  const size_t n_special = kernels_.place_points(before_.view(), x_64_.data(), y_64_.data(), u_before_.data(),
+                                                 now_.row(y), n, {state_.data(), wanted_.data()});
   n_absent_ = n_edges_ = 0;
-  if (n_special > 0) find_special(x_64, y_64, plane_stride);
+  if (n_special > 0) find_special(plane_stride);
   n_found_ = n - n_absent_;
 }
 
-// What is not plain. States are looked at eight at a time.
-void RowCarrier::find_special(const int32_t* x_64, const int32_t* y_64, ptrdiff_t plane_stride) {
+// What is not plain. States are looked at eight at a time; those of edges without their surface become absent.
+void RowCarrier::find_special(ptrdiff_t plane_stride) {
   constexpr uint64_t kAllPlain = uint64_t{kWarpPlain} * 0x0101010101010101u;
-  const size_t n = offset_.size();
+  const size_t n = wanted_.size();
   for (size_t first = 0; first < n; first += 8) {
     uint64_t states;
     std::memcpy(&states, state_.data() + first, sizeof states);
     if (states == kAllPlain) continue;
-    for (size_t i = first; i < std::min(first + 8, n); ++i) {
-      if (state_[i] == kWarpPlain) continue;
-      if (state_[i] == kWarpAbsent || !find_edge(i, x_64[i], y_64[i], plane_stride)) absent_[n_absent_++] = i;
+    const size_t end = std::min(first + 8, n);
+    if (states == 0) {  // kWarpAbsent
+      n_absent_ += end - first;
+      continue;
+    }
+    for (size_t i = first; i < end; ++i) {
+      if (state_[i] == kWarpEdge && !find_edge(i, x_64_[i], y_64_[i], plane_stride)) state_[i] = kWarpAbsent;
+      if (state_[i] == kWarpAbsent) ++n_absent_;
     }
   }
 }
@@ -106,16 +99,18 @@ int16_t RowCarrier::mean(const int16_t* samples, ptrdiff_t stride, const Edge& e
   return static_cast<int16_t>(sum >= 0 ? (sum + half) / edge.sum : -((half - sum) / edge.sum));
 }
 
-const int16_t* RowCarrier::fetch(const BorderedPlane& plane) {
-  kernels_.filter_points(plane.row(0), plane.stride(), kWarpFilter.data(), offset_.data(), phase_x_.data(),
-                         phase_y_.data(), offset_.size(), picked_.data());
-  for (size_t i = 0; i < n_absent_; ++i) picked_[absent_[i]] = 0;
+void RowCarrier::fetch(const BorderedPlane& plane, int16_t* out) {
+  kernels_.filter_points(plane.row(0), plane.stride(), kWarpFilter.data(), x_64_.data(), y_64_.data(), state_.data(),
+                         wanted_.size(), out);
   const size_t n = n_edges_;
   for (size_t i = 0; i < n; ++i) edge_points_[i].stand_in = mean(plane.row(0), plane.stride(), edges_[i]);
+  if (is_chroma_) {
+    for (size_t i = 0; i < n; ++i) out[edges_[i].column] = edge_points_[i].stand_in;
+    return;
+  }
   kernels_.filter_edge_points(plane.row(0), plane.stride(), before_.row(0), before_.view().stride, kWarpFilter.data(),
                               edge_points_.data(), n, edge_samples_.data());
-  for (size_t i = 0; i < n; ++i) picked_[edges_[i].column] = edge_samples_[i];
-  return picked_.data();
+  for (size_t i = 0; i < n; ++i) out[edges_[i].column] = edge_samples_[i];
 }
 
 }  // namespace pac::sim

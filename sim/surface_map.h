@@ -26,22 +26,24 @@ class SurfaceMap {
   int height() const { return keys_.height() - 2 * kBorder; }
   const uint32_t* row(int y) const { return keys_.row(y + kBorder) + kBorder; }
 
-  // The keys of a frame, `surfaces` as surfaces_of(). None is smooth yet.
+  // The keys of a frame, `surfaces` by id, or empty: 1 for all ids but 0. None is smooth yet.
   void set(PlaneView<const float> depth, PlaneView<const uint32_t> id, std::span<const uint32_t> surfaces,
            const WarpKernels& kernels);
   // Every second key of every second row; (width + 1) / 2 and (height + 1) / 2 of them.
   void set_half(const SurfaceMap& full);
 
   // Marks keys as smooth: before other frames look things up.
-  void find_smooth();
+  void find_smooth(const WarpKernels& kernels);
 
   KeyMap view() const { return {row(0), keys_.stride(), width(), height()}; }
 
  private:
   uint32_t* written_row(int y) { return keys_.row(y + kBorder) + kBorder; }
 
-  IdImage keys_;             // with a border of 0
-  GrayImage mixed_, wider_;  // with a border of 1: 1 where two and four taps a side meet more than one surface
+  static constexpr int kRows = 5;  // where the taps of a point and of its next ones meet other surfaces: pairs of them
+
+  IdImage keys_;     // with a border of 0
+  GrayImage mixed_;  // the last kRows rows of WarpKernels::mark_mixed(), two columns from the left; and one of 0
 };
 
 }  // namespace pac::sim

@@ -66,18 +66,20 @@ TEST_CASE("the filter is equal on every instruction set, at the extremes of its 
         sample = static_cast<int16_t>(round % 3 == 0 ? (value < 0 ? -8192 : 8191) : value);
       }
       const auto n = static_cast<size_t>(round % 23);
-      std::vector<int32_t> offset(n);
-      std::vector<uint8_t> phase_x(n), phase_y(n);
+      std::vector<int32_t> x(n), y(n);
+      std::vector<uint8_t> present(n);
       for (size_t i = 0; i < n; ++i) {
-        offset[i] = static_cast<int32_t>(next_random(state) % (kStride * 10));
-        phase_x[i] = static_cast<uint8_t>(next_random(state) % kWarpPhases);
-        phase_y[i] = static_cast<uint8_t>(next_random(state) % kWarpPhases);
+        x[i] = 64 * kWarpTapsBefore + static_cast<int32_t>(next_random(state) % (64 * 48));
+        y[i] = 64 * kWarpTapsBefore + static_cast<int32_t>(next_random(state) % (64 * 8));
+        present[i] =
+            static_cast<uint8_t>(next_random(state) % (round % 2 == 0 ? 3 : 30) == 0 ? kWarpAbsent : 1 + i % 2);
+        if (present[i] == kWarpAbsent) x[i] = y[i] = i % 2 == 0 ? kWarpNowhere : 1 << 24;  // not to be read
       }
       std::vector<int16_t> out[2] = {std::vector<int16_t>(n + 1, 99), std::vector<int16_t>(n + 1, 99)};
-      scalar.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(), phase_x.data(),
-                           phase_y.data(), n, out[0].data());
-      kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(),
-                                           phase_x.data(), phase_y.data(), n, out[1].data());
+      scalar.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(), present.data(), n,
+                           out[0].data());
+      kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(),
+                                           present.data(), n, out[1].data());
       REQUIRE(out[0] == out[1]);
     }
   }
@@ -120,23 +122,19 @@ TEST_CASE("places in the frame before are equal on every instruction set, inside
         u[i] = depths[next_random(state) % 8];
         now[i] = some_key(state, true);
       }
-      std::vector<int32_t> offset[2];
-      std::vector<uint8_t> bytes[2][3];
+      std::vector<uint8_t> states[2];
       std::vector<uint32_t> wanted[2];
       size_t special[2];
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
       for (int side = 0; side < 2; ++side) {
-        offset[side].assign(n + 1, 77);
         wanted[side].assign(n + 1, 77);
-        for (auto& array : bytes[side]) array.assign(n + 1, 77);
-        special[side] = tables[side]->place_points(map, 100, x.data(), y.data(), u.data(), now.data(), n,
-                                                   {offset[side].data(), bytes[side][0].data(), bytes[side][1].data(),
-                                                    bytes[side][2].data(), wanted[side].data()});
+        states[side].assign(n + 1, 77);
+        special[side] = tables[side]->place_points(map, x.data(), y.data(), u.data(), now.data(), n,
+                                                   {states[side].data(), wanted[side].data()});
       }
       REQUIRE(special[0] == special[1]);
-      REQUIRE(offset[0] == offset[1]);
       REQUIRE(wanted[0] == wanted[1]);
-      for (int array = 0; array < 3; ++array) REQUIRE(bytes[0][array] == bytes[1][array]);
+      REQUIRE(states[0] == states[1]);
     }
   }
 }
@@ -155,11 +153,12 @@ TEST_CASE("keys of surfaces and depths are equal on every instruction set, for i
         id[i] = ids[next_random(state) % 5];
         depth[i] = next_random(state) % 4 == 0 ? 1.0f : between(state, -0.5f, 1.5f);
       }
-      std::vector<uint32_t> keys[2] = {std::vector<uint32_t>(n + 1, 9), std::vector<uint32_t>(n + 1, 9)};
-      scalar.surface_keys_row(id.data(), depth.data(), surfaces.data(), surfaces.size(), n, keys[0].data());
-      kernels_for(isa)->warp.surface_keys_row(id.data(), depth.data(), surfaces.data(), surfaces.size(), n,
-                                              keys[1].data());
-      REQUIRE(keys[0] == keys[1]);
+      for (const uint32_t* table : {surfaces.data(), static_cast<const uint32_t*>(nullptr)}) {
+        std::vector<uint32_t> keys[2] = {std::vector<uint32_t>(n + 1, 9), std::vector<uint32_t>(n + 1, 9)};
+        scalar.surface_keys_row(id.data(), depth.data(), table, surfaces.size(), n, keys[0].data());
+        kernels_for(isa)->warp.surface_keys_row(id.data(), depth.data(), table, surfaces.size(), n, keys[1].data());
+        REQUIRE(keys[0] == keys[1]);
+      }
     }
   }
 }
@@ -198,28 +197,60 @@ TEST_CASE("points near edges are equal on every instruction set, at depths withi
   }
 }
 
-TEST_CASE("points of one height are filtered as points of many are, on every instruction set") {
+TEST_CASE("where the filter meets one surface only is marked alike on every instruction set") {
+  const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  uint32_t state = 31;
+  for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
+    if (kernels_for(isa) == nullptr) continue;
+    const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
+    for (size_t n = 1; n < 60; ++n) {
+      std::vector<uint32_t> here(n + 1), below(n + 1);
+      for (size_t i = 0; i <= n; ++i) {
+        here[i] = i % 9 == 0 ? some_key(state, false) : 7u << 16 | (0x3F00u + next_random(state) % 6);
+        below[i] = i % 23 == 0 ? some_key(state, false) : 7u << 16 | (0x3F04u + next_random(state) % 6);
+      }
+      std::vector<uint8_t> mixed[2];
+      std::vector<uint32_t> keys[2];
+      std::vector<uint8_t> flags(n + 8);
+      for (uint8_t& flag : flags) flag = next_random(state) % 12 == 0;
+      const uint8_t* const rows[5] = {flags.data() + 1, flags.data() + 3, flags.data(), flags.data() + 4,
+                                      flags.data() + 2};
+      for (int side = 0; side < 2; ++side) {
+        mixed[side].assign(n + 1, 77);
+        tables[side]->mark_mixed(here.data(), below.data(), n, mixed[side].data());
+        keys[side].assign(n + 1, 77);
+        tables[side]->mark_smooth(rows, n, keys[side].data());
+      }
+      REQUIRE(mixed[0] == mixed[1]);
+      REQUIRE(keys[0] == keys[1]);
+    }
+  }
+}
+
+TEST_CASE("points of one height, of a few and of many are filtered alike on every instruction set") {
   constexpr ptrdiff_t kStride = 64;
   const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
   uint32_t state = 23;
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
     for (int round = 0; round < 100; ++round) {
-      std::vector<int16_t> plane(kStride * 8);
+      std::vector<int16_t> plane(kStride * 12);
       for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 16384) - 8192);
       constexpr size_t kPoints = 29;
-      std::vector<int32_t> offset(kPoints);
-      std::vector<uint8_t> phase_x(kPoints), phase_y(kPoints, static_cast<uint8_t>(round % kWarpPhases));
+      std::vector<int32_t> x(kPoints), y(kPoints);
+      std::vector<uint8_t> present(kPoints, kWarpPlain);
       for (size_t i = 0; i < kPoints; ++i) {
-        const auto spread = static_cast<int32_t>(next_random(state) % (round % 3 == 0 ? 2 : 1));
-        offset[i] = static_cast<int32_t>(i) + spread + (round % 5 == 0 && i % 7 == 6 ? -1 : 0);
-        phase_x[i] = static_cast<uint8_t>(next_random(state) % kWarpPhases);
+        const auto spread = static_cast<int32_t>(next_random(state) % (round % 3 == 0 ? 80 : 16));
+        x[i] = 64 * (kWarpTapsBefore + static_cast<int32_t>(i)) + spread + (round % 5 == 0 && i % 7 == 6 ? -100 : 0);
+        y[i] = 64 * kWarpTapsBefore + round +
+               static_cast<int32_t>(next_random(state) % (1 + static_cast<uint32_t>(round) % 8));
+        if (round % 4 == 3 && i % 11 == 5) present[i] = kWarpAbsent;
       }
       std::vector<int16_t> out[2] = {std::vector<int16_t>(kPoints), std::vector<int16_t>(kPoints)};
-      scalar.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(), phase_x.data(),
-                           phase_y.data(), kPoints, out[0].data());
-      kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), offset.data(),
-                                           phase_x.data(), phase_y.data(), kPoints, out[1].data());
+      scalar.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(), present.data(), kPoints,
+                           out[0].data());
+      kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(),
+                                           present.data(), kPoints, out[1].data());
       REQUIRE(out[0] == out[1]);
     }
   }

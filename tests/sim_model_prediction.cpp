@@ -87,11 +87,12 @@ TEST_CASE("a pan by whole pixels shifts luma, by two of them chroma, and shows t
     }
 }
 
-TEST_CASE("nothing is carried from another surface or from another depth") {
+TEST_CASE("nothing is carried from another object or from another depth") {
   for (const bool other_depth : {false, true}) {
     Wall wall;
-    sim::ModelPredictor model = predictor();
-    model.reference(wall.gray, wall.depth.view(), wall.id.view(), {});
+    sim::ModelPredictor model(kWidth, kHeight, {0, 1, 1}, 0.5, 0.5, best_isa(), {sim::kStands, sim::kStands, 1});
+    const sim::Transforms objects = {glm::mat4(1.0f)};
+    model.reference(wall.gray, wall.depth.view(), wall.id.view(), {}, objects);
     model.keep(wall.picture.y.view(), wall.picture.cb.view(), wall.picture.cr.view());
     for (int y = 0; y < kHeight; ++y)
       for (int x = 20; x < 40; ++x) {
@@ -100,7 +101,7 @@ TEST_CASE("nothing is carried from another surface or from another depth") {
         else
           wall.id.row(y)[x] = 2;
       }
-    const Frame420& reference = model.reference(wall.gray, wall.depth.view(), wall.id.view(), {});
+    const Frame420& reference = model.reference(wall.gray, wall.depth.view(), wall.id.view(), {}, objects);
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         REQUIRE(reference.y.row(y)[x] == (x >= 20 && x < 40 ? 128 : wall.picture.y.row(y)[x]));

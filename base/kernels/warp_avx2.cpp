@@ -84,34 +84,52 @@ inline __m256i depth_code(__m256 u) {
   return _mm256_srli_epi32(_mm256_castps_si256(bounded), 16);
 }
 
-inline __m256i surface_keys(const uint32_t* id, const float* depth, const uint32_t* surfaces, __m256i last) {
-  const __m256i ids = load(id);
-  const __m256i known = _mm256_cmpeq_epi32(_mm256_min_epu32(ids, last), ids);
-  const __m256i surface = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), reinterpret_cast<const int*>(surfaces),
-                                                      _mm256_and_si256(ids, known), known, 4);
-  const __m256 u = _mm256_sub_ps(_mm256_set1_ps(1.0f), _mm256_loadu_ps(depth));
-  return _mm256_or_si256(_mm256_slli_epi32(surface, 16), depth_code(u));
-}
+// Ids to surfaces in the upper halves.
+struct SurfaceTable {
+  const int* surfaces;
+  __m256i last;
+  __m256i operator()(__m256i ids) const {
+    const __m256i known = _mm256_cmpeq_epi32(_mm256_min_epu32(ids, last), ids);
+    return _mm256_slli_epi32(
+        _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), surfaces, _mm256_and_si256(ids, known), known, 4), 16);
+  }
+};
+struct OneSurface {
+  __m256i operator()(__m256i ids) const {
+    return _mm256_andnot_si256(_mm256_cmpeq_epi32(ids, _mm256_setzero_si256()), _mm256_set1_epi32(1 << 16));
+  }
+};
 
-void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
-                      uint32_t* keys) {
-  // Indices of the gather are signed.
-  const size_t count = n_surfaces < 0x7FFFFFFF ? n_surfaces : 0x7FFFFFFF;
-  const __m256i last = _mm256_set1_epi32(static_cast<int>(count - 1));
+template <class Surfaces>
+inline void surface_keys_row(const uint32_t* id, const float* depth, const Surfaces& surfaces, size_t n,
+                             uint32_t* keys) {
+  const auto eight = [&](const uint32_t* ids, const float* z) {
+    const __m256 u = _mm256_sub_ps(_mm256_set1_ps(1.0f), _mm256_loadu_ps(z));
+    return _mm256_or_si256(surfaces(load(ids)), depth_code(u));
+  };
   size_t i = 0;
-  for (; i + 8 <= n; i += 8) store(keys + i, surface_keys(id + i, depth + i, surfaces, last));
+  for (; i + 8 <= n; i += 8) store(keys + i, eight(id + i, depth + i));
   if (i == n) return;
   uint32_t last_id[8] = {}, last_keys[8];
   float last_depth[8] = {};
   __builtin_memcpy(last_id, id + i, (n - i) * sizeof(uint32_t));
   __builtin_memcpy(last_depth, depth + i, (n - i) * sizeof(float));
-  store(last_keys, surface_keys(last_id, last_depth, surfaces, last));
+  store(last_keys, eight(last_id, last_depth));
   __builtin_memcpy(keys + i, last_keys, (n - i) * sizeof(uint32_t));
+}
+
+void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
+                      uint32_t* keys) {
+  if (surfaces == nullptr) return surface_keys_row(id, depth, OneSurface{}, n, keys);
+  // Indices of the gather are signed.
+  const size_t count = n_surfaces < 0x7FFFFFFF ? n_surfaces : 0x7FFFFFFF;
+  const SurfaceTable table{reinterpret_cast<const int*>(surfaces), _mm256_set1_epi32(static_cast<int>(count - 1))};
+  surface_keys_row(id, depth, table, n, keys);
 }
 
 struct Lookup {
   const int* keys;
-  __m256i width_64, height_64, map_stride, plane_stride;
+  __m256i width_64, height_64, map_stride;
 };
 
 // 0xFFFFFFFF where keys without their smooth bits belong to the wanted ones.
@@ -128,60 +146,105 @@ inline __m256i in_range(__m256i position_64, __m256i end_64) {
 
 // Returns how many of the eight are plain.
 inline int place(const Lookup& before, const int32_t* x_64, const int32_t* y_64, const float* u, const uint32_t* now,
-                 const WarpPlaces& out, size_t at) {
+                 uint8_t* state, uint32_t* wanted_keys) {
   const __m256i x = load(x_64), y = load(y_64);
+  const __m256i surface = _mm256_and_si256(load(now), _mm256_set1_epi32(static_cast<int>(kKeySurfaceBits)));
+  const __m256i wanted = _mm256_or_si256(surface, depth_code(_mm256_loadu_ps(u)));
+  store(wanted_keys, wanted);
+  const __m256i background = _mm256_cmpeq_epi32(surface, _mm256_setzero_si256());
+  const __m256i inside =
+      _mm256_andnot_si256(background, _mm256_and_si256(in_range(x, before.width_64), in_range(y, before.height_64)));
+  if (_mm256_testz_si256(inside, inside) != 0) {
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(state), _mm_setzero_si128());
+    return 0;
+  }
   const __m256i column = _mm256_srai_epi32(x, 6), line = _mm256_srai_epi32(y, 6);
-  const __m256i wanted =
-      _mm256_or_si256(_mm256_and_si256(load(now), _mm256_set1_epi32(static_cast<int>(kKeySurfaceBits))),
-                      depth_code(_mm256_loadu_ps(u)));
-  const __m256i inside = _mm256_and_si256(in_range(x, before.width_64), in_range(y, before.height_64));
   const __m256i index = _mm256_add_epi32(_mm256_mullo_epi32(line, before.map_stride), column);
   const __m256i key = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), before.keys, index, inside, 4);
   const __m256i smooth = _mm256_srai_epi32(_mm256_slli_epi32(key, 17), 31);
   const __m256i plain = _mm256_and_si256(smooth, belongs(key, wanted));
-  store(out.wanted + at, wanted);
-  const __m256i before_taps = _mm256_set1_epi32(kWarpTapsBefore);
-  const __m256i offset = _mm256_add_epi32(_mm256_mullo_epi32(_mm256_sub_epi32(line, before_taps), before.plane_stride),
-                                          _mm256_sub_epi32(column, before_taps));
-  store(out.offset + at, _mm256_and_si256(offset, plain));
-  const __m256i phase = _mm256_and_si256(plain, _mm256_set1_epi32(kWarpPhases - 1));
-  const __m256i state = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(plain, inside));
-  const __m256i phases = _mm256_packus_epi32(_mm256_and_si256(x, phase), _mm256_and_si256(y, phase));
-  const __m256i bytes = _mm256_packus_epi16(phases, _mm256_packus_epi32(state, state));
-  const __m256i ordered = _mm256_permutevar8x32_epi32(bytes, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7));
-  const __m128i both = _mm256_castsi256_si128(ordered);
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(out.phase_x + at), both);
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(out.phase_y + at), _mm_unpackhi_epi64(both, both));
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(out.state + at), _mm256_extracti128_si256(ordered, 1));
+  const __m256i states = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(plain, inside));
+  const __m128i words = _mm_packus_epi32(_mm256_castsi256_si128(states), _mm256_extracti128_si256(states, 1));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(state), _mm_packus_epi16(words, words));
   return __builtin_popcount(static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(plain))));
 }
 
-size_t place_points(const KeyMap& map, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
-                    const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out) {
+size_t place_points(const KeyMap& map, const int32_t* x_64, const int32_t* y_64, const float* u_before,
+                    const uint32_t* now, size_t n, const WarpPlaces& out) {
   const Lookup before{reinterpret_cast<const int*>(map.keys), _mm256_set1_epi32(map.width * kWarpPhases),
-                      _mm256_set1_epi32(map.height * kWarpPhases), _mm256_set1_epi32(static_cast<int>(map.stride)),
-                      _mm256_set1_epi32(static_cast<int>(plane_stride))};
+                      _mm256_set1_epi32(map.height * kWarpPhases), _mm256_set1_epi32(static_cast<int>(map.stride))};
   size_t i = 0, plain = 0;
   for (; i + 8 <= n; i += 8)
-    plain += static_cast<size_t>(place(before, x_64 + i, y_64 + i, u_before + i, now + i, out, i));
+    plain +=
+        static_cast<size_t>(place(before, x_64 + i, y_64 + i, u_before + i, now + i, out.state + i, out.wanted + i));
   if (i == n) return n - plain;
   const size_t rest = n - i;
-  int32_t x[8], y[8], offset[8];
+  int32_t x[8], y[8];
   for (int k = 0; k < 8; ++k) x[k] = y[k] = kWarpNowhere;
   float u[8] = {};
   uint32_t keys[8] = {}, wanted[8];
-  uint8_t phase_x[8], phase_y[8], state[8];
+  uint8_t state[8];
   __builtin_memcpy(x, x_64 + i, rest * 4);
   __builtin_memcpy(y, y_64 + i, rest * 4);
   __builtin_memcpy(u, u_before + i, rest * 4);
   __builtin_memcpy(keys, now + i, rest * 4);
-  plain += static_cast<size_t>(place(before, x, y, u, keys, {offset, phase_x, phase_y, state, wanted}, 0));
-  __builtin_memcpy(out.offset + i, offset, rest * 4);
+  plain += static_cast<size_t>(place(before, x, y, u, keys, state, wanted));
   __builtin_memcpy(out.wanted + i, wanted, rest * 4);
-  __builtin_memcpy(out.phase_x + i, phase_x, rest);
-  __builtin_memcpy(out.phase_y + i, phase_y, rest);
   __builtin_memcpy(out.state + i, state, rest);
   return n - plain;
+}
+
+// ---- What is smooth ----
+
+// Lanes of 0xFFFFFFFF where keys belong together.
+inline __m256i together(__m256i a, __m256i b) {
+  const __m256i from_low = _mm256_add_epi32(_mm256_sub_epi32(a, b), _mm256_set1_epi32(kKeyTolerance));
+  return _mm256_cmpeq_epi32(_mm256_min_epu32(from_low, _mm256_set1_epi32(2 * kKeyTolerance)), from_low);
+}
+
+inline void mark_eight(const uint32_t* here, const uint32_t* below, uint8_t* mixed) {
+  const __m256i a = load(here), b = load(here + 1), c = load(below), d = load(below + 1);
+  const __m256i all = _mm256_and_si256(_mm256_and_si256(together(a, b), together(a, c)),
+                                       _mm256_and_si256(together(c, d), together(b, d)));
+  const __m256i ones = _mm256_add_epi32(all, _mm256_set1_epi32(1));
+  const __m128i words = _mm_packus_epi32(_mm256_castsi256_si128(ones), _mm256_extracti128_si256(ones, 1));
+  _mm_storel_epi64(reinterpret_cast<__m128i*>(mixed), _mm_packus_epi16(words, words));
+}
+
+void mark_mixed(const uint32_t* here, const uint32_t* below, size_t n, uint8_t* mixed) {
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8) mark_eight(here + i, below + i, mixed + i);
+  if (i == n) return;
+  uint32_t last_here[9] = {}, last_below[9] = {};
+  uint8_t last_mixed[8];
+  __builtin_memcpy(last_here, here + i, (n - i + 1) * 4);
+  __builtin_memcpy(last_below, below + i, (n - i + 1) * 4);
+  mark_eight(last_here, last_below, last_mixed);
+  __builtin_memcpy(mixed + i, last_mixed, n - i);
+}
+
+void mark_smooth(const uint8_t* const rows[5], size_t n, uint32_t* keys) {
+  const auto any_of_five = [&](size_t at) {
+    __m128i any = _mm_setzero_si128();
+    for (int row = 0; row < 5; ++row)
+      any = _mm_or_si128(any, _mm_loadu_si128(reinterpret_cast<const __m128i*>(rows[row] + at)));
+    return any;
+  };
+  size_t i = 0;
+  // Of 16 columns read 12 are used.
+  for (; i + 12 <= n; i += 8) {
+    const __m128i down = any_of_five(i);
+    const __m128i two = _mm_or_si128(down, _mm_srli_si128(down, 1));
+    const __m128i any = _mm_or_si128(_mm_or_si128(two, _mm_srli_si128(two, 2)), _mm_srli_si128(down, 4));
+    const __m256i none = _mm256_cmpeq_epi32(_mm256_cvtepu8_epi32(any), _mm256_setzero_si256());
+    store(keys + i, _mm256_or_si256(load(keys + i), _mm256_and_si256(none, _mm256_set1_epi32(kKeySmooth))));
+  }
+  for (; i < n; ++i) {
+    int any = 0;
+    for (int row = 0; row < 5; ++row)
+      for (size_t k = 0; k < 5; ++k) any |= rows[row][i + k];
+    if (any == 0) keys[i] |= kKeySmooth;
+  }
 }
 
 // ---- Filter ----
@@ -201,9 +264,10 @@ inline __m256i filter_down(const Rows& rows, __m256i ty) {
   return _mm256_packs_epi32(_mm256_srai_epi32(low, 8), _mm256_srai_epi32(high, 8));
 }
 
+// By positions in 1/64.
 struct Taps {
   const int16_t* table;
-  const int16_t* operator[](uint8_t phase) const { return table + kWarpTapStride * phase; }
+  const int16_t* operator[](int32_t position) const { return table + kWarpTapStride * (position & (kWarpPhases - 1)); }
 };
 
 // Partial sums of points 2 i and 2 i + 1 in the halves of sums[i], finished and in order.
@@ -214,62 +278,97 @@ inline __m128i finish_eight(const __m256i sums[4]) {
   return _mm_blend_epi16(even, _mm_slli_epi32(odd, 16), 0xAA);
 }
 
-// Eight points at one height, no more than eight columns from the first one: down the sixteen columns once.
-inline __m128i filter_together(const int16_t* first, ptrdiff_t stride, Taps taps, const int32_t* offset,
-                               const uint8_t* phase_x, uint8_t phase_y) {
-  alignas(32) int16_t v[16];
-  const __m256i ty = _mm256_broadcastsi128_si256(load(taps[phase_y]));
-  store(v, filter_down([&](int k) { return load_16(first + k * stride); }, ty));
-  __m256i sums[4];
-  for (int i = 0; i < 4; ++i)
-    sums[i] = _mm256_madd_epi16(load_two(v + (offset[2 * i] - offset[0]), v + (offset[2 * i + 1] - offset[0])),
-                                load_two(taps[phase_x[2 * i]], taps[phase_x[2 * i + 1]]));
-  return finish_eight(sums);
-}
-
-inline __m256i filter_two(const int16_t* a, const int16_t* b, ptrdiff_t stride, Taps taps, const uint8_t* phase_x,
-                          const uint8_t* phase_y) {
-  const __m256i ty = load_two(taps[phase_y[0]], taps[phase_y[1]]);
+// Two points anywhere.
+inline __m256i filter_two(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y) {
+  const auto first = [&](int i) {
+    return plane + ((y[i] >> 6) - kWarpTapsBefore) * stride + (x[i] >> 6) - kWarpTapsBefore;
+  };
+  const int16_t *a = first(0), *b = first(1);
+  const __m256i ty = load_two(taps[y[0]], taps[y[1]]);
   const __m256i v = filter_down([&](int k) { return load_two(a + k * stride, b + k * stride); }, ty);
-  return _mm256_madd_epi16(v, load_two(taps[phase_x[0]], taps[phase_x[1]]));
+  return _mm256_madd_epi16(v, load_two(taps[x[0]], taps[x[1]]));
 }
 
-inline bool are_together(const int32_t* offset, const uint8_t* phase_y) {
-  uint64_t phases;
-  __builtin_memcpy(&phases, phase_y, 8);
-  if (phases != 0x0101010101010101u * phase_y[0]) return false;
-  const __m256i from_first = _mm256_sub_epi32(load(offset), _mm256_set1_epi32(offset[0]));
+// Eight points no more than eight columns from the first one: sixteen columns are filtered down once for each of the
+// heights among them, of which there are a few. False where there are more.
+constexpr int kHeights = 5;
+inline bool filter_down_heights(const int16_t* plane, ptrdiff_t stride, Taps taps, __m256i columns, const int32_t* y,
+                                int16_t v[kHeights][16], int32_t* at) {
+  const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(_mm256_castsi256_si128(columns)));
   const __m256i near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(8)), from_first);
-  return _mm256_movemask_epi8(near) == -1;
+  if (_mm256_movemask_epi8(near) != -1) return false;
+  const int16_t* first = plane + _mm_cvtsi128_si32(_mm256_castsi256_si128(columns)) - kWarpTapsBefore;
+  const __m256i heights = load(y);
+  __m256i places = from_first;
+  unsigned left = 0xFF;
+  for (int i = 0; i < kHeights; ++i) {
+    const int32_t height = y[__builtin_ctz(left)];
+    const __m256i same = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(height));
+    const int16_t* rows = first + ((height >> 6) - kWarpTapsBefore) * stride;
+    const __m256i ty = _mm256_broadcastsi128_si256(load(taps[height]));
+    store(v[i], filter_down([&](int k) { return load_16(rows + k * stride); }, ty));
+    places = _mm256_add_epi32(places, _mm256_and_si256(same, _mm256_set1_epi32(16 * i)));
+    left &= ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
+    if (left != 0) continue;
+    store(at, places);
+    return true;
+  }
+  return false;
 }
 
-inline __m128i filter_eight(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* offset,
-                            const uint8_t* phase_x, const uint8_t* phase_y) {
-  if (are_together(offset, phase_y))
-    return filter_together(plane + offset[0], stride, taps, offset, phase_x, phase_y[0]);
+inline __m128i filter_eight(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y) {
+  alignas(32) int16_t v[kHeights][16];
+  alignas(32) int32_t at[8];
   __m256i sums[4];
-  for (int i = 0; i < 4; ++i)
-    sums[i] =
-        filter_two(plane + offset[2 * i], plane + offset[2 * i + 1], stride, taps, phase_x + 2 * i, phase_y + 2 * i);
+  if (filter_down_heights(plane, stride, taps, _mm256_srai_epi32(load(x), 6), y, v, at)) {
+    for (int i = 0; i < 4; ++i)
+      sums[i] = _mm256_madd_epi16(load_two(v[0] + at[2 * i], v[0] + at[2 * i + 1]),
+                                  load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
+  } else {
+    for (int i = 0; i < 4; ++i) sums[i] = filter_two(plane, stride, taps, x + 2 * i, y + 2 * i);
+  }
   return finish_eight(sums);
 }
 
-void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* table, const int32_t* offset,
-                   const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out) {
+// Eight points of which some are absent: they go where the first of the others is.
+inline __m128i filter_present(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y,
+                              uint64_t states) {
+  const __m128i bytes = _mm_cvtsi64_si128(static_cast<long long>(states));
+  const __m128i absent = _mm_cmpeq_epi8(bytes, _mm_setzero_si128());
+  const __m256i absent_32 = _mm256_cvtepi8_epi32(absent);
+  const int first = __builtin_ctzll(states) / 8;
+  alignas(32) int32_t present_x[8], present_y[8];
+  store(present_x, _mm256_blendv_epi8(load(x), _mm256_set1_epi32(x[first]), absent_32));
+  store(present_y, _mm256_blendv_epi8(load(y), _mm256_set1_epi32(y[first]), absent_32));
+  return _mm_andnot_si128(_mm_cvtepi8_epi16(absent), filter_eight(plane, stride, taps, present_x, present_y));
+}
+
+inline __m128i filter_group(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y,
+                            const uint8_t* state) {
+  uint64_t states;
+  __builtin_memcpy(&states, state, 8);
+  if (states == 0) return _mm_setzero_si128();
+  // States are below 128: adding 127 sets the upper bits of those that are not 0.
+  constexpr uint64_t kUpper = 0x8080808080808080u;
+  if (((states + ~kUpper) & kUpper) != kUpper) return filter_present(plane, stride, taps, x, y, states);
+  return filter_eight(plane, stride, taps, x, y);
+}
+
+void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* table, const int32_t* x_64,
+                   const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out) {
   const Taps taps{table};
   size_t i = 0;
   for (; i + 8 <= n; i += 8)
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i),
-                     filter_eight(plane, stride, taps, offset + i, phase_x + i, phase_y + i));
+                     filter_group(plane, stride, taps, x_64 + i, y_64 + i, state + i));
   if (i == n) return;
-  int32_t last_offset[8];
-  uint8_t last_x[8] = {}, last_y[8] = {};
+  int32_t last_x[8] = {}, last_y[8] = {};
+  uint8_t last_state[8] = {};
   int16_t last_out[8];
-  for (size_t k = 0; k < 8; ++k) last_offset[k] = offset[i + k < n ? i + k : i];
-  __builtin_memcpy(last_x, phase_x + i, n - i);
-  __builtin_memcpy(last_y, phase_y + i, n - i);
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(last_out),
-                   filter_eight(plane, stride, taps, last_offset, last_x, last_y));
+  __builtin_memcpy(last_x, x_64 + i, (n - i) * 4);
+  __builtin_memcpy(last_y, y_64 + i, (n - i) * 4);
+  __builtin_memcpy(last_state, state + i, n - i);
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(last_out), filter_group(plane, stride, taps, last_x, last_y, last_state));
   __builtin_memcpy(out + i, last_out, (n - i) * sizeof(int16_t));
 }
 
@@ -331,6 +430,8 @@ void fill_warp_avx2(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.surface_keys_row = surface_keys_row;
   table.place_points = place_points;
+  table.mark_mixed = mark_mixed;
+  table.mark_smooth = mark_smooth;
   table.filter_points = filter_points;
   table.filter_edge_points = filter_edge_points;
   table.add_carried_row = add_carried_row;

@@ -20,7 +20,7 @@ constexpr int kWarpTapStride = 8;  // coefficients of one phase in the table; th
 constexpr int32_t kWarpNowhere = INT32_MIN;
 constexpr int kCarriedBits = 5;  // of carried differences below the point
 
-// What a pixel shows, in 32 bits: bits 16..31 the surface (modulo 2^16), bits 0..13 its depth (surface_keys_row), and
+// What a pixel shows, in 32 bits: bits 16..31 what moves it (modulo 2^16), bits 0..13 its depth (surface_keys_row), and
 // in maps of the frame before bit 14: the taps of the filter around a place between this pixel and the next ones all
 // show what it shows.
 constexpr uint32_t kKeyBits = 0xFFFF3FFF, kKeySurfaceBits = 0xFFFF0000, kKeySmooth = 0x4000;
@@ -36,12 +36,10 @@ struct KeyMap {
   int32_t width, height;
 };
 
-// Where the filter finds points. Arrays of n.
+// How pixels are found in the frame before. Arrays of n.
 struct WarpPlaces {
-  int32_t* offset;             // of the tap (-2, -2) in a plane of samples
-  uint8_t *phase_x, *phase_y;  // 0..63
-  uint8_t* state;              // kWarpPlain, kWarpEdge or kWarpAbsent; where not plain the three above are 0
-  uint32_t* wanted;            // kKeyBits of the key that is looked for
+  uint8_t* state;    // kWarpPlain, kWarpEdge or kWarpAbsent
+  uint32_t* wanted;  // kKeyBits of the key that is looked for
 };
 constexpr uint8_t kWarpAbsent = 0, kWarpEdge = 1, kWarpPlain = 2;
 
@@ -60,28 +58,37 @@ struct WarpKernels {
   void (*reproject_row)(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                         float* u_before);
 
-  // keys[i] = surface << 16 | code, where the surface is surfaces[id[i]], 0 beyond the table of n_surfaces >= 1, and
-  // the code the upper 16 bits of u = min(max(1 - depth[i], 0), 1.9921875) in float, which are below 2^14.
+  // keys[i] = surface << 16 | code, where the surface is surfaces[id[i]], 0 beyond the table of n_surfaces >= 1, or
+  // without a table (surfaces null) 1 for all ids but 0; and the code the upper 16 bits of u = min(max(1 - depth[i],
+  // 0), 1.9921875) in float, which are below 2^14.
   void (*surface_keys_row)(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces,
                            size_t n, uint32_t* keys);
 
   // Looks n pixels up in the frame before. Pixel i was at (x_64[i], y_64[i]), in 1/64, with 1 - depth u_before[i] (no
-  // NaN), and shows the surface of now[i]: wanted = that surface and the code of u_before. Absent where the nearest
-  // pixel, floor((x_64 + 32) / 64), is outside the map; plain where the key at the floors of x_64 / 64 and y_64 / 64 is
-  // smooth and differs from the wanted one by kKeyTolerance at most; else edge. Of a plain one
-  //   offset = (floor of y - 2) * plane_stride + (floor of x - 2), phase = x_64 mod 64, y_64 mod 64.
+  // NaN), and shows the surface of now[i]: wanted = that surface and the code of u_before. Absent where the surface is
+  // 0, the background, or the nearest pixel, floor((x_64 + 32) / 64), is outside the map; plain where the key at the
+  // floors of x_64 / 64 and y_64 / 64 is smooth and differs from the wanted one by kKeyTolerance at most; else edge.
   // Returns how many are not plain.
-  size_t (*place_points)(const KeyMap& before, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
-                         const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out);
+  size_t (*place_points)(const KeyMap& before, const int32_t* x_64, const int32_t* y_64, const float* u_before,
+                         const uint32_t* now, size_t n, const WarpPlaces& out);
 
-  // n points of a plane of 16-bit samples in -8192..8191. Point i starts at plane + offset[i] (its tap -2, -2; rows are
-  // `stride` apart), at the phases phase_x[i] and phase_y[i], rows of `taps` [kWarpPhases][kWarpTapStride] whose sum
-  // is 512 and whose absolute sum is at most 1020:
+  // mixed[i] = 1 where the keys here[i], here[i + 1] and below them do not all belong together, else 0: neighbors on
+  // one of the square's four sides differ by more than kKeyTolerance (the smooth bit is not set yet). Reads n + 1 keys
+  // of each row.
+  void (*mark_mixed)(const uint32_t* here, const uint32_t* below, size_t n, uint8_t* mixed);
+
+  // Sets kKeySmooth in keys[i] where nothing in columns i..i + 4 of the five rows is 1. Reads n + 4 of each row.
+  void (*mark_smooth)(const uint8_t* const rows[5], size_t n, uint32_t* keys);
+
+  // n points of a plane of 16-bit samples in -8192..8191, rows `stride` apart; `plane` is its sample (0, 0). Those
+  // whose state is kWarpAbsent are 0. Point i is at (x_64[i], y_64[i]), in 1/64: with the taps of the phases x_64 mod
+  // 64 and y_64 mod 64, rows of `taps` [kWarpPhases][kWarpTapStride] whose sum is 512 and whose absolute sum is at most
+  // 1020, and samples from column floor(x_64 / 64) - 2 and row floor(y_64 / 64) - 2 on
   //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 128) >> 8     fits 16 bits
   //   out[i] = (sum over j of taps[phase_x][j] * v[j] + 512) >> 10            and so does this
   // Reads up to 16 samples of each of the 6 rows.
-  void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
-                        const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out);
+  void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                        const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out);
 
   // As filter_points where some taps show something else: samples whose keys in the map (rows are map_stride apart)
   // differ from the wanted one by more than kKeyTolerance count as stand_in. Reads 8 keys of each of the 6 rows, too.

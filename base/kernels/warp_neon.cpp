@@ -74,12 +74,15 @@ inline int16_t filter_point(const Rows& rows, const int16_t* taps_x, const int16
   return static_cast<int16_t>((vaddvq_s32(sums) + 512) >> 10);
 }
 
-void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
-                   const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out) {
+void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                   const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out) {
   for (size_t i = 0; i < n; ++i) {
-    const int16_t* at = plane + offset[i];
-    out[i] = filter_point([&](int k) { return vld1q_s16(at + k * stride); }, taps + kWarpTapStride * phase_x[i],
-                          taps + kWarpTapStride * phase_y[i]);
+    out[i] = 0;
+    if (state[i] == kWarpAbsent) continue;
+    const int16_t* at = plane + ((y_64[i] >> 6) - kWarpTapsBefore) * stride + (x_64[i] >> 6) - kWarpTapsBefore;
+    out[i] = filter_point([&](int k) { return vld1q_s16(at + k * stride); },
+                          taps + kWarpTapStride * (x_64[i] & (kWarpPhases - 1)),
+                          taps + kWarpTapStride * (y_64[i] & (kWarpPhases - 1)));
   }
 }
 

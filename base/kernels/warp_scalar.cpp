@@ -39,28 +39,49 @@ uint32_t depth_code(float u) {
 void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
                       uint32_t* keys) {
   for (size_t i = 0; i < n; ++i)
-    keys[i] = (id[i] < n_surfaces ? surfaces[id[i]] << 16 : 0) | depth_code(1.0f - depth[i]);
+    keys[i] = (surfaces == nullptr  ? uint32_t{id[i] != 0} << 16
+               : id[i] < n_surfaces ? surfaces[id[i]] << 16
+                                    : 0) |
+              depth_code(1.0f - depth[i]);
 }
 
-size_t place_points(const KeyMap& before, ptrdiff_t plane_stride, const int32_t* x_64, const int32_t* y_64,
-                    const float* u_before, const uint32_t* now, size_t n, const WarpPlaces& out) {
+size_t place_points(const KeyMap& before, const int32_t* x_64, const int32_t* y_64, const float* u_before,
+                    const uint32_t* now, size_t n, const WarpPlaces& out) {
   size_t not_plain = 0;
   for (size_t i = 0; i < n; ++i) {
     const int32_t x = x_64[i] >> 6, y = y_64[i] >> 6;
     const uint32_t wanted = (now[i] & kKeySurfaceBits) | depth_code(u_before[i]);
     const int32_t near_x = (x_64[i] + kWarpPhases / 2) >> 6, near_y = (y_64[i] + kWarpPhases / 2) >> 6;
-    const bool is_inside = near_x >= 0 && near_y >= 0 && near_x < before.width && near_y < before.height;
+    const bool is_inside = (now[i] & kKeySurfaceBits) != 0 && near_x >= 0 && near_y >= 0 && near_x < before.width &&
+                           near_y < before.height;
     const uint32_t key = is_inside ? before.keys[y * before.stride + x] : 0;
     const auto apart = static_cast<int32_t>((key & kKeyBits) - wanted);
     const bool is_plain = (key & kKeySmooth) != 0 && apart <= kKeyTolerance && apart >= -kKeyTolerance;
     out.wanted[i] = wanted;
     out.state[i] = is_plain ? kWarpPlain : is_inside ? kWarpEdge : kWarpAbsent;
-    out.offset[i] = is_plain ? static_cast<int32_t>((y - kWarpTapsBefore) * plane_stride) + x - kWarpTapsBefore : 0;
-    out.phase_x[i] = static_cast<uint8_t>(is_plain ? x_64[i] & (kWarpPhases - 1) : 0);
-    out.phase_y[i] = static_cast<uint8_t>(is_plain ? y_64[i] & (kWarpPhases - 1) : 0);
     if (!is_plain) ++not_plain;
   }
   return not_plain;
+}
+
+bool apart(uint32_t a, uint32_t b) {
+  // One comparison: the difference is in -kKeyTolerance..kKeyTolerance.
+  return a - b + uint32_t{kKeyTolerance} > 2 * uint32_t{kKeyTolerance};
+}
+
+void mark_mixed(const uint32_t* here, const uint32_t* below, size_t n, uint8_t* mixed) {
+  for (size_t i = 0; i < n; ++i)
+    mixed[i] = apart(here[i], here[i + 1]) || apart(here[i], below[i]) || apart(below[i], below[i + 1]) ||
+               apart(here[i + 1], below[i + 1]);
+}
+
+void mark_smooth(const uint8_t* const rows[5], size_t n, uint32_t* keys) {
+  for (size_t i = 0; i < n; ++i) {
+    uint8_t any = 0;
+    for (int row = 0; row < 5; ++row)
+      for (size_t k = 0; k < 5; ++k) any |= rows[row][i + k];
+    if (any == 0) keys[i] |= kKeySmooth;
+  }
 }
 
 int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x, const int16_t* taps_y) {
@@ -73,11 +94,15 @@ int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x,
   return static_cast<int16_t>(sum >> 10);
 }
 
-void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
-                   const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out) {
-  for (size_t i = 0; i < n; ++i)
-    out[i] =
-        filter_point(plane + offset[i], stride, taps + kWarpTapStride * phase_x[i], taps + kWarpTapStride * phase_y[i]);
+void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                   const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out) {
+  for (size_t i = 0; i < n; ++i) {
+    out[i] = 0;
+    if (state[i] == kWarpAbsent) continue;
+    const int16_t* at = plane + ((y_64[i] >> 6) - kWarpTapsBefore) * stride + (x_64[i] >> 6) - kWarpTapsBefore;
+    out[i] = filter_point(at, stride, taps + kWarpTapStride * (x_64[i] & (kWarpPhases - 1)),
+                          taps + kWarpTapStride * (y_64[i] & (kWarpPhases - 1)));
+  }
 }
 
 void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
@@ -122,6 +147,8 @@ void fill_warp_scalar(WarpKernels& table) {
   table.filter_points = filter_points;
   table.surface_keys_row = surface_keys_row;
   table.place_points = place_points;
+  table.mark_mixed = mark_mixed;
+  table.mark_smooth = mark_smooth;
   table.filter_edge_points = filter_edge_points;
   table.add_carried_row = add_carried_row;
   table.composite_signed_row = composite_signed_row;

@@ -76,13 +76,23 @@ inline __m128i filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* 
   return _mm_madd_epi16(v, load(taps_x));
 }
 
-void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* offset,
-                   const uint8_t* phase_x, const uint8_t* phase_y, size_t n, int16_t* out) {
+inline __m128i finished(__m128i sums) {
+  return _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(512)), 10);
+}
+
+inline int16_t sum_of(__m128i partial) {
+  const __m128i pairs = _mm_hadd_epi32(partial, partial);
+  return static_cast<int16_t>(_mm_cvtsi128_si32(finished(_mm_hadd_epi32(pairs, pairs))));
+}
+
+void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                   const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out) {
   const auto partial = [&](size_t i) {
-    return filter_point(plane + offset[i], stride, taps + kWarpTapStride * phase_x[i],
-                        taps + kWarpTapStride * phase_y[i]);
+    if (state[i] == kWarpAbsent) return _mm_setzero_si128();
+    const int16_t* at = plane + ((y_64[i] >> 6) - kWarpTapsBefore) * stride + (x_64[i] >> 6) - kWarpTapsBefore;
+    return filter_point(at, stride, taps + kWarpTapStride * (x_64[i] & (kWarpPhases - 1)),
+                        taps + kWarpTapStride * (y_64[i] & (kWarpPhases - 1)));
   };
-  const auto finished = [](__m128i sums) { return _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(512)), 10); };
   size_t i = 0;
   for (; i + 4 <= n; i += 4) {
     const __m128i sums =
@@ -90,10 +100,7 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
     const __m128i four = finished(sums);
     _mm_storel_epi64(reinterpret_cast<__m128i*>(out + i), _mm_packs_epi32(four, four));
   }
-  for (; i < n; ++i) {
-    const __m128i one = partial(i), pairs = _mm_hadd_epi32(one, one);
-    out[i] = static_cast<int16_t>(_mm_cvtsi128_si32(finished(_mm_hadd_epi32(pairs, pairs))));
-  }
+  for (; i < n; ++i) out[i] = sum_of(partial(i));
 }
 
 inline __m128i load(const uint32_t* at) {
@@ -120,8 +127,8 @@ void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* 
       _mm_storeu_si128(reinterpret_cast<__m128i*>(patch + k * kWarpTapStride),
                        _mm_blendv_epi8(stand_in, samples, mask));
     }
-    constexpr int32_t kNoOffset = 0;
-    filter_points(patch, kWarpTapStride, taps, &kNoOffset, &edge.phase_x, &edge.phase_y, 1, out + i);
+    out[i] = sum_of(filter_point(patch, kWarpTapStride, taps + kWarpTapStride * edge.phase_x,
+                                 taps + kWarpTapStride * edge.phase_y));
   }
 }
 
