@@ -11,7 +11,7 @@
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 2;
+inline constexpr uint8_t kVersion = 3;
 
 enum Section : uint32_t {
   kConnectivity,

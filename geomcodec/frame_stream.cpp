@@ -10,7 +10,7 @@ namespace pac::geomcodec {
 namespace {
 
 constexpr uint8_t kFrameMagic[3] = {'P', 'G', 'F'};
-constexpr uint8_t kFrameVersion = 1;
+constexpr uint8_t kFrameVersion = 2;
 constexpr uint8_t kOwnGrid = 1, kMotionShift = 1, kChangedShift = 3;  // flags: 1 bit, 2 bits, 4 bits, one unused
 
 void put_long(std::vector<uint8_t>& out, int64_t value) {

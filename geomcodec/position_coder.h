@@ -14,14 +14,15 @@
 namespace pac::geomcodec {
 
 // (a - d) x (b - d) over the parallelograms: the normal of the surface, as long as the areas are large.
-inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const Position> known) {
+inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const KnownPosition> known) {
   std::array<int64_t, 3> normal = {0, 0, 0};
   for (int i = 0; i < stencil.n_parallelograms; ++i) {
     const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    const PackedPosition opposite = known[p.opposite].at, side_1 = known[p.side_1].at, side_2 = known[p.side_2].at;
     int64_t u[3], w[3];
     for (size_t axis = 0; axis < 3; ++axis) {
-      u[axis] = int64_t{known[p.side_1][axis]} - known[p.opposite][axis];
-      w[axis] = int64_t{known[p.side_2][axis]} - known[p.opposite][axis];
+      u[axis] = int64_t{side_1.field(axis)} - opposite.field(axis);
+      w[axis] = int64_t{side_2.field(axis)} - opposite.field(axis);
     }
     normal[0] += u[1] * w[2] - u[2] * w[1];
     normal[1] += u[2] * w[0] - u[0] * w[2];
@@ -98,7 +99,9 @@ class PositionCoder {
   }
   // Passes the next vertex over: what follows takes it for predicted as well as the last one. For an encoder that
   // samples.
-  void skip() { memory_.push_back(memory_.empty() ? 0 : memory_.back()); }
+  void skip(const Position& position) {
+    known_.push_back({PackedPosition(position), known_.empty() ? 0 : known_.back().classes});
+  }
   // The same where the caller has the stencil (with twists) already; not for raw positions.
   void code(uint32_t v, const Stencil& stencil, std::span<Position> positions);
 
@@ -113,8 +116,8 @@ class PositionCoder {
   void code_raw(Position& position) {
     for (uint16_t& coordinate : position) coordinate = static_cast<uint16_t>(coder_.raw(bits_, coordinate));
   }
-  Prediction predict(uint32_t v, const Stencil& stencil, std::span<const Position> known) const;
-  void lift(const Stencil& stencil, std::span<const Position> known, Prediction& prediction) const;
+  Prediction predict(uint32_t v, const Stencil& stencil) const;
+  void lift(const Stencil& stencil, Prediction& prediction) const;
   void get_scales(uint32_t v, const Stencil& stencil, uint32_t (&scale)[3]) const;
   bool code_choice(const Stencil& stencil, const Prediction& prediction, std::span<Position> positions, uint32_t v);
   void code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction, Position& position);
@@ -135,19 +138,18 @@ class PositionCoder {
   const int bits_;
   const int32_t mask_, half_;
   std::unique_ptr<Models> models_;
-  std::vector<uint32_t> memory_;  // per vertex: classes of its residuals, 10 bits each
+  std::vector<KnownPosition> known_;  // the vertices before; the one being coded has its classes first
   Stencil stencil_;
   int32_t error_[2][2] = {};  // [first of a part][by the part before]: recent costs
   uint32_t last_choice_ = 0;
 };
 
 template <class Coder>
-typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t v, const Stencil& stencil,
-                                                                        std::span<const Position> known) const {
+typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t v, const Stencil& stencil) const {
   Prediction prediction;
   prediction.basis = basis_of(stencil);
   if (stencil.n_parallelograms > 0) {
-    const Features features = features_of(stencil, known);
+    const Features features = features_of(stencil, known_);
     const auto& share = weights_.share[PositionWeights::class_of(stencil)];
     int32_t spread = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -157,13 +159,13 @@ typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t
       spread = std::max(spread, std::abs(features.mean_less_base[axis]));
     }
     prediction.spread = std::min(class_of(spread >> 6), kClasses);
-    if (weights_.lifted) lift(stencil, known, prediction);
+    if (weights_.lifted) lift(stencil, prediction);
   } else if (stencil.n_neighbors > 0) {
-    for (size_t axis = 0; axis < 3; ++axis)
-      prediction.at[axis] = scaled_mean(
-          neighbor_sum(stencil, [&](uint32_t vertex) { return int32_t{known[vertex][axis]}; }), stencil.n_neighbors, 0);
+    PackedPosition sum;
+    for (int i = 0; i < stencil.n_neighbors; ++i) sum += known_[stencil.neighbor[i]].at;
+    for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = scaled_mean(sum.field(axis), stencil.n_neighbors, 0);
   } else if (v > 0) {
-    std::copy_n(known[v - 1].begin(), 3, prediction.at);
+    for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = known_[v - 1].at.field(axis);
   }
   for (int32_t& coordinate : prediction.at) coordinate = std::clamp(coordinate, 0, mask_);
   return prediction;
@@ -171,8 +173,8 @@ typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t
 
 // The axis nearest to the normal last.
 template <class Coder>
-void PositionCoder<Coder>::lift(const Stencil& stencil, std::span<const Position> known, Prediction& prediction) const {
-  const std::array<int64_t, 3> normal = normal_of(stencil, known);
+void PositionCoder<Coder>::lift(const Stencil& stencil, Prediction& prediction) const {
+  const std::array<int64_t, 3> normal = normal_of(stencil, known_);
   int* order = prediction.order;
   const auto swap_if_longer = [&](int i, int j) {
     if (std::abs(normal[static_cast<size_t>(order[i])]) > std::abs(normal[static_cast<size_t>(order[j])]))
@@ -188,9 +190,9 @@ void PositionCoder<Coder>::lift(const Stencil& stencil, std::span<const Position
 template <class Coder>
 void PositionCoder<Coder>::get_scales(uint32_t v, const Stencil& stencil, uint32_t (&scale)[3]) const {
   uint32_t sum = 0;  // of each role in 10 bits: at most 12 * 17
-  for (int i = 0; i < stencil.n_neighbors; ++i) sum += memory_[stencil.neighbor[i]];
+  for (int i = 0; i < stencil.n_neighbors; ++i) sum += known_[stencil.neighbor[i]].classes;
   const bool alone = stencil.n_neighbors == 0;
-  if (alone && v > 0) sum = memory_[v - 1];
+  if (alone && v > 0) sum = known_[v - 1].classes;
   for (int role = 0; role < 3; ++role)
     scale[role] = static_cast<uint32_t>(
         scaled_mean(static_cast<int32_t>(sum >> 10 * role & 1023), alone ? 1 : stencil.n_neighbors, 1));
@@ -225,7 +227,7 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
     classes_coded |= its_class << 10 * role;
     other = role == 0 ? its_class : std::max(other, its_class);
   }
-  memory_[v] = classes_coded;
+  known_[v].classes = classes_coded;
   release(coder_, coder);
 }
 
@@ -233,40 +235,47 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
 template <class Coder>
 bool PositionCoder<Coder>::code_choice(const Stencil& stencil, const Prediction& prediction,
                                        std::span<Position> positions, uint32_t v) {
-  Position candidate[kChoices];
-  size_t n = 1;  // candidate[1 .. n - 1]
+  PackedPosition candidate[kChoices + 1];  // one more is written before it is dropped
+  size_t n = 1;                            // candidate[1 .. n - 1]
   const auto add = [&](const int32_t(&at)[3]) {
     Position position;
     for (size_t axis = 0; axis < 3; ++axis) position[axis] = static_cast<uint16_t>(std::clamp(at[axis], 0, mask_));
-    if (n < kChoices && std::find(candidate + 1, candidate + n, position) == candidate + n) candidate[n++] = position;
+    candidate[n] = PackedPosition(position);
+    bool is_new = n < kChoices;
+    for (size_t i = 1; i < n; ++i) is_new = is_new & (candidate[i] != candidate[n]);
+    n += is_new ? 1 : 0;
   };
   add(prediction.at);
   for (int i = 0; i < stencil.n_parallelograms; ++i) {
     const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    const PackedPosition sides = known_[p.side_1].at + known_[p.side_2].at, opposite = known_[p.opposite].at;
     int32_t at[3];
-    for (size_t axis = 0; axis < 3; ++axis)
-      at[axis] = positions[p.side_1][axis] + positions[p.side_2][axis] - positions[p.opposite][axis];
+    for (size_t axis = 0; axis < 3; ++axis) at[axis] = sides.field(axis) - opposite.field(axis);
     add(at);
   }
   uint32_t choice = 0;
   if constexpr (!Coder::kDecodes) {
-    const auto found = std::find(candidate + 1, candidate + n, positions[v]);
+    const auto found = std::find(candidate + 1, candidate + n, PackedPosition(positions[v]));
     choice = found == candidate + n ? 0 : static_cast<uint32_t>(found - candidate);
   }
   choice = code_symbol(coder_, models_->choice_by_basis[prediction.basis][n - 1],
                        models_->choice_by_last[last_choice_][n - 1], choice);
   last_choice_ = std::min<uint32_t>(choice, kChoices - 1);
   if (choice == 0 || choice >= n) return false;
-  positions[v] = candidate[choice];
+  for (size_t axis = 0; axis < 3; ++axis) positions[v][axis] = static_cast<uint16_t>(candidate[choice].field(axis));
   return true;
 }
 
 template <class Coder>
 void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Position> positions) {
-  memory_.push_back(0);
-  Prediction prediction = predict(v, stencil, positions);
+  known_.emplace_back();
+  const Prediction prediction = predict(v, stencil);
   const uint32_t lag = weights_.period != 0 ? weights_.period : parts_.lag(v);
-  if (lag == 0 || lag >= v) return code_position(v, stencil, prediction, positions);
+  if (lag == 0 || lag >= v) {
+    code_position(v, stencil, prediction, positions);
+    known_[v].at = PackedPosition(positions[v]);
+    return;
+  }
 
   // v moved from the vertex before as their counterparts in the part before did.
   Prediction repeated;
@@ -276,6 +285,7 @@ void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Po
         std::clamp(positions[v - 1][axis] + positions[v - lag][axis] - positions[v - lag - 1][axis], 0, mask_);
   int32_t(&error)[2] = error_[weights_.period == 0 && parts_.is_first(v) ? 1 : 0];
   code_position(v, stencil, error[1] < error[0] ? repeated : prediction, positions);
+  known_[v].at = PackedPosition(positions[v]);
   error[0] += (64 * cost(positions[v], prediction.at) - error[0]) >> 3;
   error[1] += (64 * cost(positions[v], repeated.at) - error[1]) >> 3;
 }

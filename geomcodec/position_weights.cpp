@@ -49,11 +49,14 @@ class Fit {
 
 PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Position> positions) {
   Fit fit[PositionWeights::kClasses];
+  std::vector<KnownPosition> known;
+  known.reserve(positions.size());
+  for (const Position& position : positions) known.push_back({PackedPosition(position), 0});
   Stencil stencil;
   for (uint32_t v = 0; v < topology.n_vertices; ++v) {
     stencils.get(v, true, stencil);
     if (stencil.n_parallelograms > 0)
-      fit[PositionWeights::class_of(stencil)].add(features_of(stencil, positions), positions[v]);
+      fit[PositionWeights::class_of(stencil)].add(features_of(stencil, known), positions[v]);
   }
   PositionWeights weights;
   for (int c = 0; c < PositionWeights::kClasses; ++c) {

@@ -71,25 +71,50 @@ struct Features {
   int32_t base[3], mean_less_base[3], twist[3];
 };
 
-inline Features features_of(const Stencil& stencil, std::span<const Position> known) {
-  int32_t base[3] = {}, twist[3] = {}, mean[3] = {};
+// A position, or a sum of up to 24 of them, in three fields of 21 bits: axes are added together.
+class PackedPosition {
+ public:
+  PackedPosition() = default;
+  explicit PackedPosition(const Position& position)
+      : fields_(uint64_t{position[0]} | uint64_t{position[1]} << kBits | uint64_t{position[2]} << 2 * kBits) {}
+  int32_t field(size_t axis) const { return static_cast<int32_t>(fields_ >> (kBits * axis) & ((1u << kBits) - 1)); }
+  PackedPosition& operator+=(PackedPosition other) {
+    fields_ += other.fields_;
+    return *this;
+  }
+  PackedPosition operator+(PackedPosition other) const { return other += *this; }
+  bool operator==(const PackedPosition&) const = default;
+
+ private:
+  static constexpr int kBits = 21;
+  uint64_t fields_ = 0;
+};
+static_assert(24 * 65535 < 1 << 21 && 2 * Stencil::kMax <= 24);
+
+// What later vertices need of one: one cache line each.
+struct KnownPosition {
+  PackedPosition at;
+  uint32_t classes = 0;  // of its residuals, 10 bits each
+};
+
+inline Features features_of(const Stencil& stencil, std::span<const KnownPosition> known) {
+  PackedPosition sides, opposites, plus, minus, mean;
   for (int i = 0; i < stencil.n_parallelograms; ++i) {
     const Stencil::Parallelogram& p = stencil.parallelogram[i];
-    const Position &one = known[p.side_1], &two = known[p.side_2], &opposite = known[p.opposite];
-    for (size_t axis = 0; axis < 3; ++axis) base[axis] += one[axis] + two[axis] - opposite[axis];
+    sides += known[p.side_1].at + known[p.side_2].at;
+    opposites += known[p.opposite].at;
   }
   for (int i = 0; i < stencil.n_twists; ++i) {
     const Stencil::Twist& t = stencil.twist[i];
-    const Position &p = known[t.plus_1], &q = known[t.plus_2], &m = known[t.minus_1], &n = known[t.minus_2];
-    for (size_t axis = 0; axis < 3; ++axis) twist[axis] += p[axis] + q[axis] - m[axis] - n[axis];
+    plus += known[t.plus_1].at + known[t.plus_2].at;
+    minus += known[t.minus_1].at + known[t.minus_2].at;
   }
-  for (int i = 0; i < stencil.n_neighbors; ++i)
-    for (size_t axis = 0; axis < 3; ++axis) mean[axis] += known[stencil.neighbor[i]][axis];
+  for (int i = 0; i < stencil.n_neighbors; ++i) mean += known[stencil.neighbor[i]].at;
   Features features;
   for (size_t axis = 0; axis < 3; ++axis) {
-    features.base[axis] = scaled_mean(base[axis], stencil.n_parallelograms, 6);
-    features.mean_less_base[axis] = scaled_mean(mean[axis], stencil.n_neighbors, 6) - features.base[axis];
-    features.twist[axis] = scaled_mean(twist[axis], stencil.n_twists, 6);
+    features.base[axis] = scaled_mean(sides.field(axis) - opposites.field(axis), stencil.n_parallelograms, 6);
+    features.mean_less_base[axis] = scaled_mean(mean.field(axis), stencil.n_neighbors, 6) - features.base[axis];
+    features.twist[axis] = scaled_mean(plus.field(axis) - minus.field(axis), stencil.n_twists, 6);
   }
   return features;
 }

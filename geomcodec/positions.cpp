@@ -25,7 +25,7 @@ std::vector<uint8_t> encode_windows(const Topology& topology, const Stencils& st
   for (size_t window = 0; window < n_windows; ++window) {
     const size_t begin = positions.size() * window / n_windows;
     const size_t end = n_windows == 1 ? positions.size() : std::min(begin + kWindow, positions.size());
-    for (; v < begin; ++v) position_coder.skip();
+    for (; v < begin; ++v) position_coder.skip(positions[v]);
     for (; v < end; ++v) position_coder.code(static_cast<uint32_t>(v), positions);
   }
   return coder.finish();

@@ -1,10 +1,12 @@
-// Adaptive binary arithmetic coding: a range coder with a 64-bit interval that is renormalized by 32 bits, with carry
-// [Martin 1979, "Range encoding"]. Encoder and decoder have the same member functions, so that one template per syntax
-// element serves both: the encoder codes the value it is given and returns it, the decoder ignores the argument and
-// returns what it read. FORMAT.md section 3.
+// Adaptive arithmetic coding: a range coder with a 64-bit interval that is renormalized by 32 bits, with carry
+// [Martin 1979, "Range encoding"]. Bits that are as good as random lie beside it, backwards from the end of the
+// section, where reading them waits for nothing. Encoder and decoder have the same member functions, so that one
+// template per syntax element serves both: the encoder codes the value it is given and returns it, the decoder ignores
+// the argument and returns what it read. FORMAT.md section 3.
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -53,7 +55,30 @@ inline uint32_t mixed_probability(const AdaptiveBit& first, const AdaptiveBit& s
   return (p * weight_p + q * weight_q) / (weight_p + weight_q);
 }
 
-inline constexpr int kSymbolBits = 20;  // probabilities of symbols are in 2^-20
+// Before loops over sixteen symbols: inlined into a loop over components, g++ unrolls them into scalar code before it
+// could make vectors of them, which doubles a decoder's time. clang++ does not.
+#if defined(__GNUC__) && !defined(__clang__)
+#define PAC_KEEP_LOOP _Pragma("GCC unroll 1")
+#else
+#define PAC_KEEP_LOOP
+#endif
+
+// Where each of 16 symbols starts, of 65536: the first at 0, each at least 3 above the one before, the last below
+// 65533.
+struct Starts {
+  static constexpr int kSymbols = 16;
+  uint16_t at[kSymbols];
+};
+
+// The interval's length as symbols divide it: its 16 leading bits, `scale`, and how many follow, `shift`. Symbol y owns
+// what lies from (at[y] * scale >> 16) << shift to where the next one starts, the last one up to scale << shift: at
+// least 1 << shift, as scale is at least 2^15; what is above is lost, less than 2^-15 of the interval.
+struct Division {
+  int shift;
+  uint16_t scale;
+  explicit Division(uint64_t range)  // at least 2^16
+      : shift(static_cast<int>(std::bit_width(range)) - 16), scale(static_cast<uint16_t>(range >> shift)) {}
+};
 
 class RangeEncoder {
  public:
@@ -73,17 +98,21 @@ class RangeEncoder {
   }
   // The low `count` (0..16) bits of value, equally probable.
   uint32_t raw(int count, uint32_t value) {
-    range_ >>= count;
-    add(range_ * value);
-    normalize();
+    raw_word_ |= uint64_t{value & ((1u << count) - 1)} << raw_count_;
+    raw_count_ += count;
+    if (raw_count_ >= 48) flush_raw();
     return value;
   }
-  // One of several symbols: it owns [start, start + size) of 0 .. 2^kSymbolBits - 1; size > 0.
-  void symbol(uint32_t start, uint32_t size) {
-    range_ >>= kSymbolBits;
-    add(range_ * start);
-    range_ *= size;
+  // One of sixteen symbols.
+  uint32_t symbol(const Starts& starts, uint32_t symbol) {
+    const Division division(range_);
+    const uint32_t begin = uint32_t{starts.at[symbol]} * division.scale >> 16;
+    const uint32_t end =
+        symbol + 1 < Starts::kSymbols ? uint32_t{starts.at[symbol + 1]} * division.scale >> 16 : division.scale;
+    add(uint64_t{begin} << division.shift);
+    range_ = uint64_t{end - begin} << division.shift;
     normalize();
+    return symbol;
   }
   bool failed() const { return false; }
   uint64_t bytes_so_far() const { return bytes_.size(); }
@@ -110,12 +139,15 @@ class RangeEncoder {
   }
   void carry();
   void emit_word();
+  void flush_raw();  // whole bytes of raw_word_
 
-  // The interval is [low_, low_ + range_), range_ >= 2^32 between calls; with 16-bit probabilities of at least 32,
-  // raw() of at most 16 bits and symbols of at least 2^6 it never falls below 2^16 before normalize(), which multiplies
-  // by 2^32.
+  // The interval is [low_, low_ + range_), range_ >= 2^32 between calls; with 16-bit probabilities of at least 32 and
+  // symbols of at least 2^17 (Division) it never falls below 2^16 before normalize(), which multiplies by 2^32.
   uint64_t low_ = 0, range_ = ~uint64_t{0};
   std::vector<uint8_t> bytes_;
+  std::vector<uint8_t> raw_bytes_;  // the section's last byte first
+  uint64_t raw_word_ = 0;           // raw_count_ bits, fewer than 48 between calls, that are in no byte yet
+  int raw_count_ = 0;
 };
 
 // Sticky: past the end it reads zeros; failed() tells once more of them were needed than any encoder leaves out.
@@ -139,29 +171,36 @@ class RangeDecoder {
     return bit;
   }
   uint32_t raw(int count, uint32_t /*unused*/ = 0) {
-    range_ >>= count;
-    const uint64_t limit = (uint64_t{1} << count) - 1;
-    const uint64_t value = code_ / range_ < limit ? code_ / range_ : limit;
-    code_ -= value * range_;
+    const uint64_t whole = raw_used_ >> 3;  // bytes at the end of which nothing is left
+    const uint32_t word = size_ >= whole + 4 ? word_at(data_ + (size_ - whole - 4)) : first_word(data_, size_, whole);
+    const uint32_t value = word >> (raw_used_ & 7) & ((1u << count) - 1);  // 7 + 16 bits at most
+    raw_used_ += static_cast<uint32_t>(count);
+    return value;
+  }
+  // All sixteen ends at once: a few vector instructions and no division. Ends ascend, so the symbol is the count of
+  // those at the code or below, less one.
+  [[gnu::always_inline]] uint32_t symbol(const Starts& starts, uint32_t /*unused*/ = 0) {
+    const Division division(range_);
+    // Below `scale`, as the code is below the range; not so in a broken stream, which then decodes to something else.
+    const auto wanted = static_cast<uint16_t>(code_ >> division.shift);
+    alignas(16) uint16_t begin[Starts::kSymbols + 1];
+    PAC_KEEP_LOOP
+    for (int i = 0; i < Starts::kSymbols; ++i)
+      begin[i] = static_cast<uint16_t>(uint32_t{starts.at[i]} * division.scale >> 16);
+    begin[Starts::kSymbols] = division.scale;
+    uint16_t count = 0;
+    PAC_KEEP_LOOP
+    for (int i = 0; i < Starts::kSymbols; ++i) count = static_cast<uint16_t>(count + (begin[i] <= wanted ? 1 : 0));
+    const uint32_t symbol = count - 1u;
+    code_ -= uint64_t{begin[symbol]} << division.shift;
+    range_ = uint64_t{static_cast<uint16_t>(begin[symbol + 1] - begin[symbol])} << division.shift;
     normalize();
-    return static_cast<uint32_t>(value);
+    return symbol;
   }
-  // Where in 0 .. 2^kSymbolBits - 1 the next symbol lies; symbol() with what this symbol owns must follow.
-  uint32_t symbol_position() {
-    range_ >>= kSymbolBits;
-    constexpr uint64_t kLimit = (uint64_t{1} << kSymbolBits) - 1;
-    const uint64_t position = code_ / range_;
-    return static_cast<uint32_t>(position < kLimit ? position : kLimit);
-  }
-  void symbol(uint32_t start, uint32_t size) {
-    code_ -= range_ * start;
-    range_ *= size;
-    normalize();
-  }
-  // More than the 8 bytes that an encoder may leave out were read past the end.
-  bool failed() const { return position_ > size_ + 8; }
+  // More than the 8 bytes that an encoder may leave out were read past the end, of both kinds together.
+  bool failed() const { return position_ + raw_bytes() > size_ + 8; }
   // Everything was read and nothing else: what finish() wrote, to the byte.
-  bool ends_exactly() const { return !failed() && position_ >= size_; }
+  bool ends_exactly() const { return !failed() && position_ + raw_bytes() >= size_; }
 
  private:
   uint32_t narrow(uint32_t probability_of_one) {
@@ -185,15 +224,21 @@ class RangeDecoder {
     const uint64_t at = position_;
     position_ += 4;
     if (size_ < 4 || at > size_ - 4) return last_word(data_, size_, at);
-    const uint8_t* bytes = data_ + at;
+    return word_at(data_ + at);
+  }
+  static uint32_t word_at(const uint8_t* bytes) {
     return uint32_t{bytes[0]} << 24 | uint32_t{bytes[1]} << 16 | uint32_t{bytes[2]} << 8 | bytes[3];
   }
+  uint64_t raw_bytes() const { return (raw_used_ + 7) >> 3; }
   // The word at `at`, zeros past the end. By value, so that a decoder's own state need not be in memory.
   static uint32_t last_word(const uint8_t* data, uint64_t size, uint64_t at);
+  // The word that ends `after` bytes before the end, zeros before the beginning.
+  static uint32_t first_word(const uint8_t* data, uint64_t size, uint64_t after);
 
   const uint8_t* data_;
   uint64_t size_;
   uint64_t position_ = 0;  // bytes delivered, those past the end included
+  uint64_t raw_used_ = 0;  // bits delivered from the end
   uint64_t code_ = 0, range_ = ~uint64_t{0};
 };
 

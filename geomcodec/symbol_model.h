@@ -9,14 +9,6 @@
 
 #include "geomcodec/range_coder.h"
 
-// Before loops over sixteen symbols: inlined into a loop over components, g++ unrolls them into scalar code before it
-// could make vectors of them, which doubles a decoder's time. clang++ does not.
-#if defined(__GNUC__) && !defined(__clang__)
-#define PAC_KEEP_LOOP _Pragma("GCC unroll 1")
-#else
-#define PAC_KEEP_LOOP
-#endif
-
 namespace pac::geomcodec {
 
 // How probable each of 16 symbols is, learned from those seen: all starts move towards where the new symbol would
@@ -78,62 +70,49 @@ inline void SymbolModel::update(uint32_t symbol, int16_t slowest) {
   seen = static_cast<int16_t>(seen + (seen < slowest ? 1 : 0));
 }
 
-// Where each symbol starts, of 2^20, with the end: of one model, or of two that are weighted by how many symbols each
-// has seen (weights add up to 32, each at least 1). All sixteen at once: a few vector instructions, which do not wait
-// for the coder's division.
-struct Starts {
-  alignas(16) int32_t at[SymbolModel::kSymbols + 1];
+// [a][b]: the weight, of 32, of a model that has seen a symbols where the other has seen b: clamp(round(32 (a + 1),
+// a + b + 2), 1, 31). A table: no division where symbols are coded.
+inline constexpr auto kSymbolWeight = [] {
+  constexpr int kCounts = SymbolModel::kTrusted + 1;
+  std::array<std::array<uint8_t, kCounts>, kCounts> weight{};
+  for (int a = 1; a <= kCounts; ++a)
+    for (int b = 1; b <= kCounts; ++b)
+      weight[static_cast<size_t>(a - 1)][static_cast<size_t>(b - 1)] =
+          static_cast<uint8_t>(std::clamp((32 * a + (a + b) / 2) / (a + b), 1, 31));
+  return weight;
+}();
 
-  explicit Starts(const SymbolModel& model) {
-    PAC_KEEP_LOOP
-    for (int i = 0; i < SymbolModel::kSymbols; ++i) at[i] = model.start[i] * 32;
-    at[SymbolModel::kSymbols] = 1 << kSymbolBits;
+// Where symbols start by one model, or by two that are weighted by how many symbols each has seen. Sixteen bits each,
+// which vector instructions multiply eight at a time; before the coder's own state is needed.
+inline Starts starts_of(const SymbolModel& model) {
+  Starts starts;
+  PAC_KEEP_LOOP
+  for (int i = 0; i < SymbolModel::kSymbols; ++i) starts.at[i] = static_cast<uint16_t>(model.start[i] * 2);
+  return starts;
+}
+// Each share is rounded down. Neighboring starts differ by 4 / 65536 at least in either model, so by
+// floor(w / 8) + floor((32 - w) / 8) >= 3 here.
+inline Starts starts_of(const SymbolModel& one, const SymbolModel& two) {
+  const auto a = static_cast<size_t>(std::min<int16_t>(one.seen, SymbolModel::kTrusted));
+  const auto b = static_cast<size_t>(std::min<int16_t>(two.seen, SymbolModel::kTrusted));
+  const uint32_t weight = kSymbolWeight[a][b];
+  const auto weight_one = static_cast<uint16_t>(weight << 11), weight_two = static_cast<uint16_t>((32 - weight) << 11);
+  Starts starts;
+  PAC_KEEP_LOOP
+  for (int i = 0; i < SymbolModel::kSymbols; ++i) {
+    const auto from_one = static_cast<uint16_t>(one.start[i] * 2), from_two = static_cast<uint16_t>(two.start[i] * 2);
+    starts.at[i] = static_cast<uint16_t>(static_cast<uint16_t>(uint32_t{from_one} * weight_one >> 16) +
+                                         static_cast<uint16_t>(uint32_t{from_two} * weight_two >> 16));
   }
-  Starts(const SymbolModel& one, const SymbolModel& two) {
-    const int32_t a = std::min<int32_t>(one.seen, SymbolModel::kTrusted) + 1;
-    const int32_t b = std::min<int32_t>(two.seen, SymbolModel::kTrusted) + 1;
-    const auto weight_one = static_cast<int16_t>(kWeight[static_cast<size_t>(a - 1)][static_cast<size_t>(b - 1)]);
-    const auto weight_two = static_cast<int16_t>(32 - weight_one);
-    PAC_KEEP_LOOP
-    for (int i = 0; i < SymbolModel::kSymbols; ++i) at[i] = one.start[i] * weight_one + two.start[i] * weight_two;
-    at[SymbolModel::kSymbols] = 1 << kSymbolBits;
-  }
-  // The greatest symbol that starts at `position` or below: starts ascend, so the count of those that do, less one.
-  uint32_t find(uint32_t position) const {
-    const auto wanted = static_cast<int32_t>(position);
-    int32_t count = -1;
-    PAC_KEEP_LOOP
-    for (int i = 0; i < SymbolModel::kSymbols; ++i) count += at[i] <= wanted ? 1 : 0;
-    return static_cast<uint32_t>(count);
-  }
-
- private:
-  // [a - 1][b - 1]: clamp(round(32 a, a + b), 1, 31): no division where symbols are coded.
-  static constexpr auto kWeight = [] {
-    constexpr int kCounts = SymbolModel::kTrusted + 1;
-    std::array<std::array<uint8_t, kCounts>, kCounts> weight{};
-    for (int a = 1; a <= kCounts; ++a)
-      for (int b = 1; b <= kCounts; ++b)
-        weight[static_cast<size_t>(a - 1)][static_cast<size_t>(b - 1)] =
-            static_cast<uint8_t>(std::clamp((32 * a + (a + b) / 2) / (a + b), 1, 31));
-    return weight;
-  }();
-};
-
-// Inlined wherever residuals are coded, so that a decoder's state stays in registers (HeldCoder).
-template <class Coder>
-[[gnu::always_inline]] inline uint32_t code_with(Coder& coder, const Starts& starts, uint32_t symbol) {
-  if constexpr (Coder::kDecodes) symbol = starts.find(coder.symbol_position());
-  const auto start = static_cast<uint32_t>(starts.at[symbol]);
-  coder.symbol(start, static_cast<uint32_t>(starts.at[symbol + 1]) - start);
-  return symbol;
+  return starts;
 }
 
-// A symbol that two contexts predict; both learn.
+// A symbol that two contexts predict; both learn. Inlined wherever residuals are coded, so that a decoder's state stays
+// in registers (HeldCoder).
 template <class Coder>
 [[gnu::always_inline]] inline uint32_t code_symbol(Coder& coder, SymbolModel& one, SymbolModel& two,
                                                    uint32_t symbol = 0) {
-  symbol = code_with(coder, Starts(one, two), symbol);
+  symbol = coder.symbol(starts_of(one, two), symbol);
   one.update(symbol, SymbolModel::kSlow);
   two.update(symbol, SymbolModel::kFast);
   return symbol;
@@ -141,7 +120,7 @@ template <class Coder>
 
 template <class Coder>
 [[gnu::always_inline]] inline uint32_t code_symbol(Coder& coder, SymbolModel& model, uint32_t symbol = 0) {
-  symbol = code_with(coder, Starts(model), symbol);
+  symbol = coder.symbol(starts_of(model), symbol);
   model.update(symbol, SymbolModel::kAlone);
   return symbol;
 }
@@ -222,5 +201,3 @@ template <class Coder>
 }
 
 }  // namespace pac::geomcodec
-
-#undef PAC_KEEP_LOOP

@@ -116,7 +116,7 @@ TEST_CASE("damaged streams whose checksum was repaired decode to a sound mesh or
 // A header from parts, with no sections: used, split, isolated, faces, extra corners, highest material, then the sizes
 // of the sections that these leave.
 Bytes header(uint8_t flags, uint8_t bits, std::initializer_list<uint64_t> numbers) {
-  Bytes bytes = {'P', 'G', 'C', 2, flags, bits};
+  Bytes bytes = {'P', 'G', 'C', 3, flags, bits};
   for (uint64_t number : numbers) {
     for (; number >= 0x80; number >>= 7) bytes.push_back(static_cast<uint8_t>(number | 0x80));
     bytes.push_back(static_cast<uint8_t>(number));
@@ -136,7 +136,7 @@ TEST_CASE("each header field at its limit and one past it") {
   Bytes magic = header(4, 16, {0, 0, 0, 0, 0, 0}), version = magic, checksum = magic, padded = magic;
   REQUIRE(decode(magic).ok());
   magic[1] = 'g';
-  version[3] = 1;
+  version[3] = 2;  // of streams before this version
   checksum.back() = static_cast<uint8_t>(checksum.back() + 1);
   padded[6] = 0x80;  // the number 0 in two bytes
   Bytes normals = header(4 + 16, 16, {2, 0, 0, 0, 0, 0, 0}), texture = header(4 + 32, 16, {1, 0, 0, 0, 0, 0, 0, 0x80});

@@ -77,6 +77,7 @@ class Models(dict):
 class Decoder:
     def __init__(self, data):
         self.data, self.at, self.range, self.models = data, 0, M64, Models()
+        self.used, self.bits = 0, int.from_bytes(data, "big")  # raw bits: the lowest ones are the last byte's
         self.code = self.word() << 32 | self.word()
 
     def word(self):
@@ -103,10 +104,8 @@ class Decoder:
         return bit
 
     def raw(self, k):
-        self.range >>= k
-        value = min(self.code // self.range, (1 << k) - 1)
-        self.code -= value * self.range
-        self.normalize()
+        value = self.bits >> self.used & ((1 << k) - 1)
+        self.used += k
         return value
 
     def bit(self, key):
@@ -158,16 +157,16 @@ class Decoder:
                 self.models[key] = Symbols(used)
             models.append(self.models[key])
         if len(models) == 1:
-            start = [32 * x for x in models[0].start]
+            start = [2 * x for x in models[0].start]
         else:
             a, b = (min(m.seen, 31) + 1 for m in models)
             w = max(1, min(31, (32 * a + (a + b) // 2) // (a + b)))
-            start = [x * w + y * (32 - w) for x, y in zip(models[0].start, models[1].start)]
-        self.range >>= 20
-        position = min(self.code // self.range, (1 << 20) - 1)
-        symbol = max(i for i in range(16) if start[i] <= position)
-        self.code -= self.range * start[symbol]
-        self.range *= start[symbol + 1] - start[symbol]
+            start = [(x * w >> 4) + (y * (32 - w) >> 4) for x, y in zip(models[0].start, models[1].start)]
+        shift = self.range.bit_length() - 16
+        begin = [x * (self.range >> shift) >> 16 for x in start]
+        symbol = max(i for i in range(16) if begin[i] <= self.code >> shift)
+        self.code -= begin[symbol] << shift
+        self.range = (begin[symbol + 1] - begin[symbol]) << shift
         self.normalize()
         for m, slowest in zip(models, (128, 18) if len(models) == 2 else (64,)):
             m.learn(symbol, slowest)
@@ -195,7 +194,7 @@ class Decoder:
         return -x if detail >> modeled else x
 
     def finish(self):
-        assert len(self.data) <= self.at <= len(self.data) + 8
+        assert len(self.data) <= self.at + (self.used + 7) // 8 <= len(self.data) + 8
 
 
 class Fields:  # section 1, and what ends a header
@@ -223,7 +222,7 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] == 2
+        assert b[:3] == b"PGC" and b[3] == 3
         self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3

@@ -15,7 +15,7 @@ STILL = [1 << 30 if i % 5 == 0 else 0 for i in range(16)]
 
 class FrameHeader(pgc.Fields):
     def __init__(self, b):
-        assert b[:3] == b"PGF" and b[3] == 1
+        assert b[:3] == b"PGF" and b[3] == 2
         self.b, self.at, flags = b, 5, b[4]
         assert flags < 128 and flags >> 1 & 3 < 3
         self.bits = None

@@ -23,7 +23,7 @@ size_t checksum_offset(const std::vector<uint8_t>& bytes) {
     return value;
   };
   if ((flags & 4) == 0) at += (flags & 8) != 0 ? 16 : 24;
-  at += ((flags & 16) != 0 ? 1u : 0u) + ((flags & 32) != 0 ? 13u : 0u);
+  at += ((flags & 16) != 0 ? 1u : 0u) + ((flags & 32) != 0 ? 13u : 0u) + ((flags & 128) != 0 ? 2u : 0u);
   const uint64_t used = number(), split = number(), isolated = number(), faces = number();
   number();
   const uint64_t highest_material = number();
@@ -36,6 +36,7 @@ size_t checksum_offset(const std::vector<uint8_t>& bytes) {
                           some && (flags & 16) != 0,
                           some && (flags & 32) != 0,
                           highest_material > 0,
+                          faces > 0 && (flags & 128) != 0,
                           some && (flags & 1) != 0};
   for (const bool size : present)
     if (size) number();
