@@ -120,14 +120,14 @@ class Walk {
  public:
   Walk(Coder& coder, const ConnectivityHeader& header, Source* source, uint64_t expected_corners)
       : coder_(coder), header_(header), source_(source), open_(topology_), models_(1) {
-    // What so many bytes usually hold; a regular mesh grows beyond it.
-    reserve(std::min<uint64_t>(header.n_corners, expected_corners));
     topology_.all_triangles = header.n_corners == uint64_t{3} * header.n_faces;
+    // What so many bytes usually hold; a regular mesh grows beyond it.
+    resize(static_cast<uint32_t>(std::min<uint64_t>(header.n_corners, expected_corners)));
   }
 
   // False: the data cannot come from an encoder.
   bool run() {
-    while (topology_.n_faces() < header_.n_faces) {
+    while (n_faces_ < header_.n_faces) {
       const uint32_t gate = open_.front();
       if (gate == kNone) {
         if (!code_seed()) return false;
@@ -136,30 +136,39 @@ class Walk {
       }
       if (coder_.failed()) return false;
     }
+    resize(n_corners_);
     for (uint32_t& twin : topology_.twin)
       if (twin == kOpen) twin = kNone;
     if (topology_.all_triangles) number_triangles();
-    return topology_.n_vertices == header_.n_vertices && topology_.n_corners() == header_.n_corners;
+    return topology_.n_vertices == header_.n_vertices && n_corners_ == header_.n_corners;
   }
   Topology take() { return std::move(topology_); }
 
  private:
-  void reserve(uint64_t n_corners) {
-    topology_.corner_vertex.reserve(n_corners);
-    topology_.corner_face.reserve(n_corners);
-    topology_.twin.reserve(n_corners);
-    topology_.face_first.reserve(n_corners / 3 + 2);
-    open_.reserve(n_corners);
+  // Arrays by corner are longer than what is coded, so that adding a face need not ask each of them.
+  void resize(uint32_t n_corners) {
+    topology_.corner_vertex.resize(n_corners);
+    topology_.twin.resize(n_corners, kOpen);
+    if (!topology_.all_triangles) topology_.corner_face.resize(n_corners);
+    open_.resize(n_corners);
+  }
+  void make_room(uint32_t n_corners) {
+    if (n_corners <= topology_.twin.size()) return;
+    resize(static_cast<uint32_t>(std::min<uint64_t>(header_.n_corners, uint64_t{2} * n_corners)));
   }
   void number_triangles() {
-    topology_.corner_face.resize(topology_.n_corners());
+    topology_.corner_face.resize(n_corners_);
+    topology_.face_first.resize(size_t{n_faces_} + 1);
     uint32_t* corner_face = topology_.corner_face.data();
-    for (uint32_t face = 0; face < topology_.n_faces(); ++face) std::fill_n(corner_face + 3 * size_t{face}, 3, face);
+    for (uint32_t face = 0; face < n_faces_; ++face) {
+      std::fill_n(corner_face + 3 * size_t{face}, 3, face);
+      topology_.face_first[face + 1] = 3 * face + 3;
+    }
   }
   static uint32_t clamped(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
   uint32_t start_of(uint32_t corner) const { return topology_.corner_vertex[corner]; }
   uint32_t end_of(uint32_t corner) const { return start_of(topology_.next(corner)); }
-  uint32_t degree(uint32_t vertex) const { return clamped(degree_[vertex], kMaxDegree); }
+  uint32_t degree(uint32_t vertex) { return clamped(open_.at(vertex).n_faces, kMaxDegree); }
 
   bool face_across(uint32_t gate);
   bool code_seed();
@@ -168,7 +177,7 @@ class Walk {
   uint32_t code_size_across(uint32_t gate_size);
   bool code_corner(uint32_t k, Place place);
   Step code_step(Place place, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
-  uint32_t candidate_at(uint32_t step, const std::array<uint32_t, kOld>& candidate);
+  Step code_far_step(AdaptiveBit* one, AdaptiveBit* two, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
   uint32_t code_old_vertex(uint32_t wanted);
   void finish_face(uint32_t gate);
 
@@ -177,10 +186,9 @@ class Walk {
   Source* source_;  // null when decoding
   Topology topology_;
   OpenEdges open_;
-  std::vector<uint8_t> degree_;      // per vertex: faces around it so far, at most 255
-  std::vector<uint8_t> has_border_;  // per vertex: an edge at it has no second face
-  std::vector<uint32_t> corners_;    // vertices of the face being coded, first edge = the gate reversed
-  std::vector<Models> models_;       // one element: too large for the stack
+  uint32_t n_corners_ = 0, n_faces_ = 0;
+  std::vector<uint32_t> corners_;  // vertices of the face being coded, first edge = the gate reversed
+  std::vector<Models> models_;     // one element: too large for the stack
   uint32_t last_step_ = kNew;
   bool last_across_ = true;
 };
@@ -192,12 +200,13 @@ bool Walk<Coder>::face_across(uint32_t gate) {
   if constexpr (!Coder::kDecodes)
     wanted =
         source_->edges.find(source_->order.vertex[b], source_->order.vertex[a], source_->face, source_->first_corner);
-  const bool across = coder_.bit(models_[0].face_across_left[degree(a)][has_border_[a]][last_across_],
-                                 models_[0].face_across_right[degree(b)][has_border_[b]][has_border_[a]], wanted) != 0;
+  const uint32_t border_a = open_.at(a).has_border, border_b = open_.at(b).has_border;
+  const bool across = coder_.bit(models_[0].face_across_left[degree(a)][border_a][last_across_],
+                                 models_[0].face_across_right[degree(b)][border_b][border_a], wanted) != 0;
   last_across_ = across;
   if (!across) {
     open_.close(gate);
-    has_border_[a] = has_border_[b] = 1;
+    open_.at(a).has_border = open_.at(b).has_border = 1;
   }
   return across;
 }
@@ -229,7 +238,7 @@ bool Walk<Coder>::code_seed() {
     source_->first_corner = 0;
   }
   const uint32_t size_less_3 = code_size(3);
-  const uint64_t room = header_.n_corners - topology_.n_corners();
+  const uint64_t room = header_.n_corners - n_corners_;
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
   corners_.clear();
   for (uint32_t k = 0; k < size_less_3 + 3; ++k)
@@ -243,12 +252,12 @@ template <class Coder>
 bool Walk<Coder>::code_face(uint32_t gate) {
   const uint32_t gate_size = topology_.size_of_face_at(gate);
   const uint32_t size_less_3 = code_size_across(gate_size);
-  const uint64_t room = header_.n_corners - topology_.n_corners();
+  const uint64_t room = header_.n_corners - n_corners_;
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
   corners_.clear();
   corners_.push_back(end_of(gate));
   corners_.push_back(start_of(gate));
-  topology_.twin[gate] = topology_.n_corners();  // no longer open: finish_face() adds the other side
+  topology_.twin[gate] = n_corners_;  // no longer open: finish_face() adds the other side
   const uint32_t size = size_less_3 + 3;
   for (uint32_t k = 2; k < size; ++k) {
     const Place place = size == 3 ? kOnlyCorner : k == 2 ? kFirstOfSeveral : k + 1 < size ? kMiddle : kLastOfSeveral;
@@ -256,14 +265,6 @@ bool Walk<Coder>::code_face(uint32_t gate) {
   }
   finish_face(gate);
   return true;
-}
-
-// What kAfterAfter and kBeforeBefore stand for. Looked up when asked for: few corners come so far.
-template <class Coder>
-uint32_t Walk<Coder>::candidate_at(uint32_t step, const std::array<uint32_t, kOld>& candidate) {
-  if (step == kAfterAfter) return candidate[kAfter] == kNone ? kNone : open_.after(candidate[kAfter]);
-  if (step == kBeforeBefore) return candidate[kBefore] == kNone ? kNone : open_.before(candidate[kBefore]);
-  return candidate[step];
 }
 
 // Which of the ways to name a corner applies; `candidate` holds the vertices that kBefore and kAfter stand for (kNone:
@@ -277,11 +278,22 @@ Step Walk<Coder>::code_step(Place place, std::array<uint32_t, kOld>& candidate, 
   const uint32_t right = corners_.empty() ? 0 : degree(corners_.front());
   AdaptiveBit* one = models_[0].step_left[place][available][left];
   AdaptiveBit* two = models_[0].step_right[place][available][right][last_step_];
-  const bool may_be_new = topology_.n_vertices<header_.n_vertices, may_be_old = topology_.n_vertices> 0;
-  if (!may_be_old) return kNew;
-  if (may_be_new && coder_.bit(one[kNew], two[kNew], wanted == kNone ? 1 : 0) != 0) return kNew;
-  for (uint32_t step = kBefore; step < kOld; ++step) {
-    candidate[step] = candidate_at(step, candidate);
+  if (topology_.n_vertices == 0) return kNew;
+  if (topology_.n_vertices < header_.n_vertices && coder_.bit(one[kNew], two[kNew], wanted == kNone ? 1 : 0) != 0)
+    return kNew;
+  if (before != kNone && coder_.bit(one[kBefore], two[kBefore], wanted == before ? 1 : 0) != 0) return kBefore;
+  if (after != kNone && after != before && coder_.bit(one[kAfter], two[kAfter], wanted == after ? 1 : 0) != 0)
+    return kAfter;
+  return code_far_step(one, two, candidate, wanted);
+}
+
+// The candidates one further, which few corners come to.
+template <class Coder>
+Step Walk<Coder>::code_far_step(AdaptiveBit* one, AdaptiveBit* two, std::array<uint32_t, kOld>& candidate,
+                                uint32_t wanted) {
+  if (candidate[kAfter] != kNone) candidate[kAfterAfter] = open_.after(candidate[kAfter]);
+  if (candidate[kBefore] != kNone) candidate[kBeforeBefore] = open_.before(candidate[kBefore]);
+  for (uint32_t step = kAfterAfter; step < kOld; ++step) {
     if (candidate[step] == kNone) continue;
     if (std::find(&candidate[kBefore], &candidate[step], candidate[step]) != &candidate[step])
       continue;  // asked already
@@ -320,8 +332,6 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
     if (topology_.n_vertices == header_.n_vertices) return false;
     vertex = topology_.n_vertices++;
     open_.add_vertex();
-    degree_.push_back(0);
-    has_border_.push_back(0);
     if constexpr (!Coder::kDecodes) {
       source_->coded_vertex[mesh_vertex] = vertex;
       source_->order.vertex.push_back(mesh_vertex);
@@ -337,19 +347,21 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
 // corners_ becomes a face; its first edge is paired with the gate (kNone: a seed).
 template <class Coder>
 void Walk<Coder>::finish_face(uint32_t gate) {
-  const uint32_t first = topology_.n_corners(), face = topology_.n_faces();
-  // One by one: what insert() does for a few elements takes longer than everything else here.
-  for (const uint32_t vertex : corners_) {
-    topology_.corner_vertex.push_back(vertex);
-    topology_.twin.push_back(kOpen);
-    if (!topology_.all_triangles) topology_.corner_face.push_back(face);
+  const uint32_t first = n_corners_, size = static_cast<uint32_t>(corners_.size());
+  make_room(first + size);
+  std::copy_n(corners_.data(), size, topology_.corner_vertex.data() + first);
+  n_corners_ += size;
+  if (!topology_.all_triangles) {
+    std::fill_n(topology_.corner_face.data() + first, size, n_faces_);
+    topology_.face_first.push_back(n_corners_);
   }
-  topology_.face_first.push_back(topology_.n_corners());
+  ++n_faces_;
   if (gate != kNone) open_.pair(gate, first);
-  for (uint32_t corner = first; corner < topology_.n_corners(); ++corner) {
-    open_.add_corner(corner);
-    uint8_t& degree = degree_[start_of(corner)];
-    if (degree < 255) ++degree;
+  for (uint32_t k = 0; k < size; ++k) {
+    const uint32_t from = corners_[k];
+    open_.add_edge(first + k, from, corners_[k + 1 < size ? k + 1 : 0]);
+    uint8_t& n_around = open_.at(from).n_faces;
+    n_around = static_cast<uint8_t>(n_around + (n_around < 255 ? 1 : 0));
   }
   if constexpr (!Coder::kDecodes) {
     source_->edges.take(source_->face);

@@ -17,16 +17,47 @@ class OpenEdges {
 
   explicit OpenEdges(Topology& topology) : topology_(topology) {}
 
-  void reserve(size_t n_corners) { next_.reserve(n_corners); }
-  void add_vertex() {
-    newest_.emplace_back();
-    queued_.push_back(0);
+  // What is known of a vertex: all of it in one place, since each step asks for most of it.
+  struct Vertex {
+    uint32_t out = kNone, in = kNone;  // where its lists of edges that leave and enter it begin: newest corner
+    uint8_t n_faces = 0;               // around it so far, at most 255
+    uint8_t has_border = 0;            // an edge at it has no second face
+    uint8_t queued = 0;                // it is in queue_
+  };
+
+  // Corners below n_corners may be added.
+  void resize(size_t n_corners) { next_.resize(n_corners); }
+  void add_vertex() { vertex_.emplace_back(); }
+  Vertex& at(uint32_t vertex) { return vertex_[vertex]; }
+  // Call for each corner of a new face in turn, once all of its corners are in the topology; the edge from -> to starts
+  // there. Pairs it with the most recent open one that runs the other way, among the kSearch newest at that end; else
+  // opens it.
+  void add_edge(uint32_t corner, uint32_t from, uint32_t to) {
+    if (topology_.twin[corner] != kOpen) return;  // the edge that the face was entered by
+    if (from == to) return close(corner);
+    if (const uint32_t newest = vertex_[to].out; newest != kNone) {
+      const bool first = is_open(newest) && end_of(newest) == from;
+      if (const uint32_t reverse = first ? newest : find_reverse(from, to); reverse != kNone)
+        return pair(corner, reverse);
+    }
+    Vertex& start = vertex_[from];
+    next_[corner] = {start.out, vertex_[to].in};
+    start.out = corner;
+    vertex_[to].in = corner;
+    if (start.queued == 0) {
+      start.queued = 1;
+      queue_.push_back(from);
+    }
   }
-  // Call for each corner of a new face in turn, once all of its corners are in the topology. Pairs the corner's edge
-  // with the most recent open one that runs the other way, among the kSearch newest at that end; else opens it.
-  void add_corner(uint32_t corner);
   // The next edge to build on: the newest one out of the vertex that has waited longest. kNone when none is open.
-  uint32_t front();
+  uint32_t front() {
+    for (; queue_front_ < queue_.size(); ++queue_front_) {
+      const uint32_t vertex = queue_[queue_front_];
+      if (const uint32_t corner = newest_out(vertex); corner != kNone) return corner;
+      vertex_[vertex].queued = 0;
+    }
+    return kNone;
+  }
   // No face will use it: gone from the boundary.
   void close(uint32_t corner) { topology_.twin[corner] = kNone; }
   void pair(uint32_t one, uint32_t other) {
@@ -36,33 +67,37 @@ class OpenEdges {
 
   // The vertex before `vertex` (after it) on the boundary: where its newest open edge comes from (goes to), or kNone.
   uint32_t before(uint32_t vertex) {
-    const uint32_t corner = newest(&Links::in, vertex);
+    const uint32_t corner = newest_in(vertex);
     return corner == kNone ? kNone : topology_.corner_vertex[corner];
   }
   uint32_t after(uint32_t vertex) {
-    const uint32_t corner = newest(&Links::out, vertex);
+    const uint32_t corner = newest_out(vertex);
     return corner == kNone ? kNone : end_of(corner);
   }
 
  private:
   bool is_open(uint32_t corner) const { return topology_.twin[corner] == kOpen; }
   uint32_t end_of(uint32_t corner) const { return topology_.corner_vertex[topology_.next(corner)]; }
-  // Corners whose edges leave (out) and enter (in) one vertex: lists, newest first.
+  // The corner before one in the lists of its edge's ends: lists are newest first.
   struct Links {
     uint32_t out = kNone, in = kNone;
   };
   // Edges that are no longer open leave the lists when they come to the front.
-  uint32_t newest(uint32_t Links::*list, uint32_t vertex) {
-    uint32_t& corner = newest_[vertex].*list;
-    while (corner != kNone && !is_open(corner)) corner = next_[corner].*list;
+  uint32_t newest_out(uint32_t vertex) {
+    uint32_t& corner = vertex_[vertex].out;
+    while (corner != kNone && !is_open(corner)) corner = next_[corner].out;
+    return corner;
+  }
+  uint32_t newest_in(uint32_t vertex) {
+    uint32_t& corner = vertex_[vertex].in;
+    while (corner != kNone && !is_open(corner)) corner = next_[corner].in;
     return corner;
   }
   uint32_t find_reverse(uint32_t from, uint32_t to);
 
   Topology& topology_;
-  std::vector<Links> newest_;    // per vertex: where its lists begin
-  std::vector<Links> next_;      // per corner: the one before it in either list
-  std::vector<uint8_t> queued_;  // per vertex: it is in queue_
+  std::vector<Vertex> vertex_;
+  std::vector<Links> next_;      // per corner
   std::vector<uint32_t> queue_;  // vertices with edges to build on, oldest at queue_front_
   size_t queue_front_ = 0;
 };

@@ -7,8 +7,9 @@
 namespace pac::geomcodec {
 namespace {
 
-// Choices are made on the whole of a small mesh, else on windows of so many vertices, spread over it.
-constexpr size_t kWindow = 256, kWindows = 16, kSmall = 6144;
+// Choices are made on the whole of a small mesh, else on windows of so many vertices, spread over it: the same choices
+// on all of bench/peers/geom_peers as with three times as many.
+constexpr size_t kWindow = 128, kWindows = 16, kSmall = 2048;
 
 size_t windows_for(size_t n_positions) {
   return n_positions <= kSmall ? 1 : kWindows;
@@ -57,7 +58,7 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
     best_bytes = std::move(bytes);
     best = weights;
   };
-  try_weights(fit_weights(topology, stencils, positions));
+  if (const PositionWeights fitted = fit_weights(topology, stencils, positions); fitted.customized) try_weights(fitted);
   PositionWeights changed = best;
   changed.lifted = true;
   try_weights(changed);

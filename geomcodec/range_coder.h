@@ -115,7 +115,6 @@ class RangeEncoder {
     return symbol;
   }
   bool failed() const { return false; }
-  uint64_t bytes_so_far() const { return bytes_.size(); }
   // The shortest byte string that decodes to what was coded. Leaves the encoder unusable.
   std::vector<uint8_t> finish();
 

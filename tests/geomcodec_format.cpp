@@ -46,7 +46,7 @@ TEST_CASE("streams are the same bytes on every platform and compiler") {
       for (const uint8_t byte : from_trained) trained.add(byte);
     }
   }
-  REQUIRE(fnv.hash() == 0xf9689e8cab9d927eu);
+  REQUIRE(fnv.hash() == 0xfac2dacd30022174u);
   REQUIRE(trained.hash() == 0x42683f571d92956au);
 }
 
