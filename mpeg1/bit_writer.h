@@ -30,6 +30,9 @@ class FastBitWriter {
   void align_to_byte() { n_bits_ = (n_bits_ + 7) & ~7; }
   uint64_t size_bits() const { return uint64_t{8} * size_ + static_cast<uint64_t>(n_bits_); }
 
+  // All of them, of which there are at most 32, right-aligned.
+  uint32_t value() const { return n_bits_ == 0 ? 0 : static_cast<uint32_t>(window_ >> (64 - n_bits_)); }
+
   // All bits of `other` after ours.
   void append(const FastBitWriter& other) {
     for (size_t i = 0; i + 4 <= other.size_; i += 4) put(load32(other.bytes_.data() + i), 32);

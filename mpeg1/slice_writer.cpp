@@ -21,10 +21,20 @@ bool has_coefficients(const Macroblock& macroblock) {
          (macroblock.kind == MacroblockKind::inter && macroblock.pattern != 0);
 }
 
+constexpr int kByte = 8;
+
+void put_last(const ShortCode& code, FastBitWriter& bits) {
+  const Code& stuffing = kAddressIncrementCodes[kAddressStuffing];
+  const auto used = static_cast<int>(bits.size_bits() % kByte);
+  if (used != 0 && used + code.length <= kByte) bits.put(stuffing.bits, stuffing.length);
+  bits.put(code.bits, code.length);
+}
+
 class BandWriter {
  public:
-  BandWriter(const PictureToWrite& picture, const Band& band, FastBitWriter& bits)
-      : picture_(picture), band_(band), bits_(bits) {}
+  // `tail`, if not null, takes a short last macroblock: where in its byte it will begin is not known yet.
+  BandWriter(const PictureToWrite& picture, const Band& band, FastBitWriter& bits, ShortCode* tail)
+      : picture_(picture), band_(band), bits_(bits), tail_(tail) {}
 
   // Rows [first, end), of which only the first may begin a slice that is not the picture's own.
   void write(int first, int end) {
@@ -32,7 +42,7 @@ class BandWriter {
     for (int row = first; row < end; ++row) {
       if (row % picture_.slice_rows == 0) start_slice(row);
       for (int address = row * picture_.columns; address < (row + 1) * picture_.columns; ++address)
-        if (picture_.macroblocks[address].kind != MacroblockKind::skipped) write_macroblock(address);
+        if (picture_.macroblocks[address].kind != MacroblockKind::skipped) write_macroblock_or_last(address);
     }
   }
 
@@ -155,6 +165,24 @@ class BandWriter {
     bits_.put(static_cast<uint32_t>(bits), size);
   }
 
+  // The last macroblock of a slice without coefficients may be short.
+  void write_macroblock_or_last(int address) {
+    const int end_row = address / picture_.columns + 1;
+    const bool is_last =
+        (address + 1) % picture_.columns == 0 && (end_row % picture_.slice_rows == 0 || end_row == picture_.rows);
+    if (!is_last || has_coefficients(picture_.macroblocks[address])) return write_macroblock(address);
+    FastBitWriter alone;
+    BandWriter writer(picture_, band_, alone, nullptr);
+    writer.predictions_ = predictions_;
+    writer.write_macroblock(address);
+    if (alone.size_bits() >= kByte) return bits_.append(alone);
+    const ShortCode code{alone.value(), static_cast<int>(alone.size_bits())};
+    if (tail_ != nullptr)
+      *tail_ = code;
+    else
+      put_last(code, bits_);
+  }
+
   void write_macroblock(int address) {
     const Macroblock& macroblock = picture_.macroblocks[address];
     const bool is_intra = macroblock.kind == MacroblockKind::intra;
@@ -186,6 +214,7 @@ class BandWriter {
   const PictureToWrite& picture_;
   const Band& band_;
   FastBitWriter& bits_;
+  ShortCode* tail_;
   Predictions predictions_;
 };
 
@@ -214,14 +243,16 @@ void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits)
   const int split = std::min(next_slice, band.end_row);
   bits.head.clear();
   bits.slices.clear();
-  if (split > band.first_row) BandWriter(picture, band, bits.head).write(band.first_row, split);
-  if (split < band.end_row) BandWriter(picture, band, bits.slices).write(split, band.end_row);
+  bits.tail = {};
+  if (split > band.first_row) BandWriter(picture, band, bits.head, &bits.tail).write(band.first_row, split);
+  if (split < band.end_row) BandWriter(picture, band, bits.slices, nullptr).write(split, band.end_row);
 }
 
 void join_bands(std::span<const BandBits> bands, std::vector<uint8_t>& out) {
   FastBitWriter all;
   for (const BandBits& band : bands) {
     all.append(band.head);
+    if (band.tail.length != 0) put_last(band.tail, all);
     if (band.slices.size_bits() == 0) continue;
     all.align_to_byte();
     all.append(band.slices);

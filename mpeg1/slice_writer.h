@@ -10,6 +10,13 @@
 
 namespace pac::mpeg1 {
 
+// A macroblock of few bits. Some players (jsmpeg, pl_mpeg) look for the next start code from the next byte boundary on,
+// and never see a slice's last macroblock where it ends before that one: stuffing then leads to the next byte.
+struct ShortCode {
+  uint32_t bits = 0;
+  int length = 0;  // 0: there is none
+};
+
 struct PictureToWrite {
   PictureHeader header;
   int columns = 0, rows = 0;                // macroblocks
@@ -28,6 +35,7 @@ int needed_f_code(const PictureToWrite& picture);
 // The bits before the band's first slice start code, which go on where the band before ended, and those from it on.
 struct BandBits {
   FastBitWriter head, slices;
+  ShortCode tail;  // after head: the last macroblock of the slice that goes on there, where it is as short as that
 };
 void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits);
 

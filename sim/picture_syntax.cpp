@@ -41,8 +41,9 @@ class SyntaxReader {
     for (;;) {
       bits_.refill();
       const mpeg1::Symbol symbol = mpeg1::kReading.address_increment[bits_.peek(11)];
-      if (symbol.length == 0 || symbol.value == mpeg1::kAddressStuffing) return false;
+      if (symbol.length == 0) return false;
       bits_.skip(symbol.length);
+      if (symbol.value == mpeg1::kAddressStuffing) continue;
       address_ += symbol.value == mpeg1::kAddressEscape ? 33 : symbol.value;
       if (address_ >= count_) return false;
       if (symbol.value != mpeg1::kAddressEscape) break;
