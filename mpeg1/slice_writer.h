@@ -10,7 +10,7 @@
 
 namespace pac::mpeg1 {
 
-// A macroblock of few bits. Some players (jsmpeg, pl_mpeg) look for the next start code from the next byte boundary on,
+// A macroblock of few bits. Some players (jsmpeg) look for the next start code from the next byte boundary on,
 // and never see a slice's last macroblock where it ends before that one: stuffing then leads to the next byte.
 struct ShortCode {
   uint32_t bits = 0;
