@@ -47,6 +47,8 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
   task.candidates = picture.candidates.data();
   task.candidates_per_macroblock = picture.candidates_per_macroblock;
+  if (type == PictureType::P && options.effort != Effort::fast && !picture.prices.empty())
+    task.prices = picture.prices.data();
   task.must_be_intra = type == PictureType::P ? forced.data() : nullptr;
   was_replaced = picture.reference != nullptr;
   if (!is_touched && !was_replaced) task.shows_reference = kept.data();

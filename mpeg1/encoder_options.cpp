@@ -142,6 +142,7 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
     return "quantizer_map has not one entry a macroblock";
   for (const uint8_t q : picture.quantizer_map)
     if (q < 1 || q > 31) return "quantizer_map entry outside 1..31";
+  if (!picture.prices.empty() && picture.prices.size() != count) return "prices have not one entry a macroblock";
   if (picture.quantizer_scale != 0 && !(picture.quantizer_scale >= 1 && picture.quantizer_scale <= 31))
     return "quantizer_scale is outside 1..31";
   if (picture.code_again != nullptr && (has_rate || !picture.quantizer_map.empty()))

@@ -55,6 +55,7 @@ class BandCoder : private MacroblockPlace {
   void start(Attempt& attempt, int attempted_quantizer) const {
     attempt.quantizer = static_cast<uint8_t>(attempted_quantizer);
     attempt.lambda = lambda();
+    if (task_.prices != nullptr) attempt.prices = task_.prices + address();
   }
 
   void code_intra() {
@@ -122,16 +123,40 @@ class BandCoder : private MacroblockPlace {
     return error * kDistortionScale;
   }
 
+  // Bits, / kBit, of coded_block_pattern; of none only where prices are given.
+  static int pattern_bits(const Attempt& attempt, unsigned pattern) {
+    if (attempt.prices == nullptr) return kPatternCodes[pattern].length * kBit;
+    int bits = 0;
+    for (unsigned block = 0; block < kBlocks; ++block) {
+      const BlockPrices& prices = attempt.prices->blocks[block];
+      bits += (pattern & 32u >> block) != 0 ? prices.coded : prices.left_out;
+    }
+    return bits;
+  }
+  // Bits, / kBit, of the macroblock's address, type and vector, and of its pattern if it has none.
+  int header_bits(const Attempt& attempt, bool is_coded) const {
+    const bool moves = attempt.vector != MotionVector{}, skips = !moves && !is_coded && may_skip();
+    if (attempt.prices != nullptr) {
+      const MacroblockPrices& prices = *attempt.prices;
+      if (skips) return prices.skipped;
+      const int vector = moves ? prices.moving + vector_bits(attempt.vector) * kBit : prices.still;
+      return prices.inter + vector + (is_coded ? 0 : pattern_bits(attempt, 0));
+    }
+    if (skips) return kBitsSkipped * kBit;
+    if (!is_coded) return (kBitsMotion + vector_bits(attempt.vector)) * kBit;
+    return (moves ? kBitsMotionCoded + vector_bits(attempt.vector) : kBitsCoded) * kBit;
+  }
+
   // Leaves out the blocks that the macroblock is cheaper without: a smaller coded_block_pattern may have a longer code.
   void choose_pattern(Attempt& attempt) const {
     int64_t lost[64] = {};  // distortion less bits' worth, of leaving these blocks out
-    int64_t least = lambda() * kPatternCodes[attempt.pattern].length;
+    int64_t least = worth(lambda(), pattern_bits(attempt, attempt.pattern));
     unsigned chosen = 0;
     for (unsigned dropped = 1; dropped < attempt.pattern; ++dropped) {
       if ((dropped & ~unsigned{attempt.pattern}) != 0) continue;
       const BlockCost& block = attempt.costs[5 - std::countr_zero(dropped)];
-      lost[dropped] = lost[dropped & (dropped - 1)] + block.energy - block.distortion - lambda() * block.bits;
-      const int64_t cost = lost[dropped] + lambda() * kPatternCodes[attempt.pattern ^ dropped].length;
+      lost[dropped] = lost[dropped & (dropped - 1)] + block.energy - block.distortion - worth(lambda(), block.bits);
+      const int64_t cost = lost[dropped] + worth(lambda(), pattern_bits(attempt, attempt.pattern ^ dropped));
       if (cost < least) least = cost, chosen = dropped;
     }
     for (unsigned left = chosen; left != 0; left &= left - 1) {
@@ -144,21 +169,18 @@ class BandCoder : private MacroblockPlace {
 
   // Of an inter attempt as it stands, or without its coefficients if that is cheaper.
   int64_t settle_inter(Attempt& attempt) const {
-    const bool moves = attempt.vector != MotionVector{};
-    const int moving_bits = moves || !may_skip() ? kBitsMotion + vector_bits(attempt.vector) : kBitsSkipped;
-    const int64_t without = prediction_error(attempt) + lambda() * moving_bits;
+    const int64_t without = prediction_error(attempt) + worth(lambda(), header_bits(attempt, false));
     if (attempt.pattern == 0) return without;
     choose_pattern(attempt);
-    const int header = moves ? kBitsMotionCoded + vector_bits(attempt.vector) : kBitsCoded;
-    const int bits = attempt.bits + header + kPatternCodes[attempt.pattern].length;
-    const int64_t with = attempt.distortion + lambda() * bits;
+    const int bits = attempt.bits + header_bits(attempt, true) + pattern_bits(attempt, attempt.pattern);
+    const int64_t with = attempt.distortion + worth(lambda(), bits);
     if (with <= without) return with;
     attempt.pattern = 0;
     return without;
   }
 
   int64_t intra_cost(const Attempt& attempt) const {
-    int bits = attempt.bits + kBitsIntra;
+    int bits = kBitsIntra;
     int predictions[3] = {128, 128, 128};
     if (column_ > 0) {
       const Macroblock& left = task_.macroblocks[address() - 1];
@@ -173,7 +195,8 @@ class BandCoder : private MacroblockPlace {
       while (difference >> size != 0) ++size;
       bits += (block < 4 ? kDcSizeLuminance[size].length : kDcSizeChrominance[size].length) + static_cast<int>(size);
     }
-    return attempt.distortion + lambda() * bits;
+    const int kind = attempt.prices != nullptr ? attempt.prices->intra - kBitsIntra * kBit : 0;
+    return attempt.distortion + worth(lambda(), attempt.bits + kind + bits * kBit);
   }
 
   // Tries a vector in the attempt that is not the best one.

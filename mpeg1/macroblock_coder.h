@@ -31,6 +31,7 @@ struct PictureTask {
   const MotionVector* ahead_vectors = nullptr;  // of each macroblock, by the lookahead, instead; or null
   const MotionVector* candidates = nullptr;     // of the caller
   int candidates_per_macroblock = 0;
+  const MacroblockPrices* prices = nullptr;  // of each macroblock, instead of Annex B's lengths; or null
   const uint8_t* must_be_intra = nullptr;    // intra refresh: a byte a macroblock, or null
   const uint8_t* shows_reference = nullptr;  // a byte a macroblock: the target holds the reference's samples; or null
   int f_code = 4;                            // vectors stay in its range

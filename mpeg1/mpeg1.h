@@ -98,6 +98,21 @@ struct SequenceOptions {
   Limits limits;
 };
 
+// What a caller pays who codes a picture's syntax elements another way than Annex B does: costs in 1/256 bit, 0..65535.
+struct BlockPrices {
+  static constexpr int kSizes = 4;
+  uint16_t left_out = 0, coded = 0;  // of the block in coded_block_pattern
+  // By zigzag position: no level there while others follow, or one, its sign included; after it more, or none.
+  uint16_t zero[64] = {}, level[64] = {}, more[64] = {}, last[64] = {};
+  uint16_t size[64][kSizes] = {};  // of |level| 1..kSizes there
+  uint16_t step[64] = {};          // of each step beyond
+};
+struct MacroblockPrices {
+  uint16_t skipped = 0, inter = 0, intra = 0;  // its kind
+  uint16_t still = 0, moving = 0;              // of inter: vector zero; another, before its own bits
+  BlockPrices blocks[6];
+};
+
 // What one picture's caller may decide. Everything has a meaning when left out.
 struct PictureOptions {
   // I or P; absent: by gop_length (and scene_cuts). The first picture is I whatever this says, unless it is P with a
@@ -126,6 +141,10 @@ struct PictureOptions {
   // is asked again after each. Where there is no constant bit rate.
   double (*code_again)(void* context, double quantizer_scale, uint64_t size_bytes) = nullptr;
   void* code_again_context = nullptr;
+  // Of each macroblock in raster order: what decisions about its levels, pattern and kind weigh instead of Annex B's
+  // code lengths; empty: those. code_again may set them for the next coding. P pictures, not at Effort::fast; levels of
+  // intra macroblocks, vectors and quantizers stay at Annex B's.
+  std::span<const MacroblockPrices> prices;
 };
 
 // Instead of a quantizer_scale: a P picture of nothing but skipped macroblocks, which shows its reference in some 20

@@ -49,9 +49,10 @@ BlockCost choose_levels(const ResidualTask& task, const BlockToQuantize& block, 
   if (nonzero == 0) {
     BlockCost nothing;
     if (with_cost) nothing.distortion = nothing.energy = energy(block);
-    nothing.bits = block.is_intra ? 2 : 0;
+    nothing.bits = block.is_intra ? 2 * kBit : 0;
     return nothing;
   }
+  if (block.prices != nullptr) return quantize_priced(block, levels, nonzero);
   if (task.choice == LevelChoice::trellis) return quantize_trellis(block, levels, nonzero);
   drop_small_levels(block, levels, nonzero);
   return with_cost ? cost_of(block, levels, nonzero) : BlockCost{};
@@ -139,6 +140,7 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
   block.lambda = attempt.lambda;
   for (int i = 0; i < kBlocks; ++i) {
     block.dct = attempt.dct + 64 * i;
+    if (attempt.prices != nullptr) block.prices = attempt.prices->blocks + i;
     const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
     if (attempt.nonzero[i] != 0) attempt.pattern = static_cast<uint8_t>(attempt.pattern | 32 >> i);
     attempt.costs[i] = cost;

@@ -82,6 +82,30 @@ inline Step only_step(const LivePath& from, int position, int64_t lambda, const 
   return {from.cost + (is_second ? second : first), 0, is_second ? bits[1] : bits[0], is_second};
 }
 
+// A path at given prices: its distortion is less the energy, cost and bits are times kBit.
+struct Priced {
+  int64_t cost, distortion;
+  int bits;
+};
+
+// Leaves the levels of a path, and nothing else.
+void keep_path(const Path* paths, int chosen, int16_t* levels, uint64_t& nonzero) {
+  uint64_t kept = 0;
+  for (int i = chosen; i != 0; i = paths[i].previous) {
+    const Path& path = paths[i];
+    levels[path.position] = levels[path.position] < 0 ? static_cast<int16_t>(-path.level) : path.level;
+    kept |= uint64_t{1} << path.position;
+  }
+  for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
+  nonzero = kept;
+}
+
+int size_price(const BlockPrices& prices, int position, int level) {
+  constexpr int kSizes = BlockPrices::kSizes;
+  if (level <= kSizes) return prices.size[position][level - 1];
+  return prices.size[position][kSizes - 1] + (level - kSizes) * prices.step[position];
+}
+
 template <bool kIsIntra>
 BlockCost quantize(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
   const int64_t lambda = block.lambda;
@@ -123,14 +147,8 @@ BlockCost quantize(const BlockToQuantize& block, int16_t* levels, uint64_t& nonz
     result.distortion += cost - block.lambda * paths[chosen].bits;
     result.bits = paths[chosen].bits + end_bits;
   }
-  uint64_t kept = 0;
-  for (int i = chosen; i != 0; i = paths[i].previous) {
-    const Path& path = paths[i];
-    levels[path.position] = levels[path.position] < 0 ? static_cast<int16_t>(-path.level) : path.level;
-    kept |= uint64_t{1} << path.position;
-  }
-  for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
-  nonzero = kept;
+  result.bits *= kBit;
+  keep_path(paths, chosen, levels, nonzero);
   return result;
 }
 
@@ -145,6 +163,50 @@ int64_t energy(const BlockToQuantize& block) {
 
 BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
   return block.is_intra ? quantize<true>(block, levels, nonzero) : quantize<false>(block, levels, nonzero);
+}
+
+// What the zeros between two levels cost is the difference of two sums over all positions before. So the second sum is
+// taken from a path before it is known where it goes on, and the cheapest path so far is the only one to go on from.
+BlockCost quantize_priced(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
+  const BlockPrices& prices = *block.prices;
+  Path paths[65];
+  Priced costs[65], ended{block.lambda * (int64_t{prices.left_out} - prices.coded), 0, 0};
+  int n_paths = 1, from = 0, chosen = 0, zeros = 0, summed = block.first_position;
+  paths[0] = {0, -1, 0, 0};
+  costs[0] = {};
+  for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
+    const int position = std::countr_zero(mask);
+    for (; summed < position; ++summed) zeros += prices.zero[summed];
+    const int c = coefficient(block, position), rounded = magnitude_of(levels[position]);
+    Priced best{INT64_MAX, 0, 0};
+    int best_level = 0;
+    for (int level = rounded; level >= 1 && level >= rounded - 1; --level) {
+      const int r = 8 * reconstruct(block, level, position);
+      if (r == 0) continue;  // decoders disagree about it
+      const int64_t gained = r * (r - 2 * c);
+      const int bits = zeros + prices.level[position] + size_price(prices, position, level);
+      const int64_t cost = costs[from].cost + kBit * gained + block.lambda * bits;
+      if (cost >= best.cost) continue;
+      best = {cost, costs[from].distortion + gained, costs[from].bits + bits};
+      best_level = level;
+    }
+    if (best_level == 0) continue;
+    if (const int64_t cost = best.cost + block.lambda * prices.last[position]; cost < ended.cost) {
+      ended = {cost, best.distortion, best.bits + prices.last[position]};
+      chosen = n_paths;
+    }
+    const int on = prices.more[position] - zeros - prices.zero[position];
+    paths[n_paths] = {static_cast<int16_t>(from), static_cast<int16_t>(position), static_cast<int16_t>(best_level), 0};
+    costs[n_paths] = {best.cost + block.lambda * on, best.distortion, best.bits + on};
+    if (costs[n_paths].cost < costs[from].cost) from = n_paths;
+    ++n_paths;
+  }
+  BlockCost result;
+  result.energy = energy(block);
+  result.distortion = result.energy + ended.distortion;
+  result.bits = ended.bits;
+  keep_path(paths, chosen, levels, nonzero);
+  return result;
 }
 
 void drop_small_levels(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
@@ -177,10 +239,10 @@ BlockCost cost_of(const BlockToQuantize& block, const int16_t* levels, uint64_t 
     const int position = std::countr_zero(mask), level = magnitude_of(levels[position]);
     const int64_t c = coefficient(block, position);
     cost.distortion += squared(c - 8 * int64_t{reconstruct(block, level, position)}) - squared(c);
-    cost.bits += run_level_bits(position - last - 1, level) - saved_at_first(block, position, level);
+    cost.bits += (run_level_bits(position - last - 1, level) - saved_at_first(block, position, level)) * kBit;
     last = position;
   }
-  if (!is_empty || block.is_intra) cost.bits += kEndOfBlock.length;
+  if (!is_empty || block.is_intra) cost.bits += kEndOfBlock.length * kBit;
   return cost;
 }
 

@@ -49,6 +49,24 @@ inline constexpr auto kStretch = [] {
   return table;
 }();
 
+// What a bit costs, in 1/256 bit, by the probability of its value in 1/4096. Digits of the logarithm by squaring.
+inline constexpr auto kBitCost = [] {
+  std::array<uint16_t, 4096> table{};
+  table[0] = 12 * 256;
+  for (uint32_t p = 1; p < 4096; ++p) {
+    uint32_t log = 0;  // of p, to base 2, in 1/512
+    while (p >> (log + 1) != 0) ++log;
+    uint64_t mantissa = uint64_t{p} << (31 - log);  // 1..2 in 2^-31
+    for (int digit = 0; digit < 9; ++digit) {
+      mantissa = mantissa * mantissa >> 31;
+      log = log << 1 | static_cast<uint32_t>(mantissa >> 32);
+      mantissa >>= mantissa >> 32;
+    }
+    table[p] = static_cast<uint16_t>((12 * 512 - log + 1) / 2);
+  }
+  return table;
+}();
+
 }  // namespace bit_mixer
 
 // One object holds what was learned; copies of it go on from there.
@@ -64,31 +82,28 @@ class BitMixer {
   // Codes (or, with a RangeDecoder, reads) one bit that n contexts predict, slots contexts[0..n); `set`: whose weights.
   template <class Coder>
   uint32_t code(Coder& coder, const uint32_t* contexts, size_t n, size_t set, uint32_t bit) {
-    std::array<int32_t, kMaxContexts>& weights = weights_[set];
     int32_t logits[kMaxContexts];
-    int64_t sum = 0;
-    for (size_t i = 0; i < n; ++i) {
-      const Slot& slot = slots_[contexts[i]];
-      logits[i] = bit_mixer::kStretch[slot.probability >> 4] * kConfidence[slot.seen] / 256;
-      sum += int64_t{weights[i]} * logits[i];
-    }
-    const int64_t logit = sum / bit_mixer::kWeightOne;
-    const int within = static_cast<int>(logit < -bit_mixer::kLimit  ? -bit_mixer::kLimit
-                                        : logit > bit_mixer::kLimit ? bit_mixer::kLimit
-                                                                    : logit);
-    const uint32_t squashed = bit_mixer::kSquash[static_cast<size_t>(within + bit_mixer::kLimit)];
-    constexpr uint32_t kLeast = geomcodec::AdaptiveBit::kCertain;
+    const uint32_t squashed = mix(contexts, n, set, logits);
     geomcodec::AdaptiveBit model;
-    model.probability_of_one = static_cast<uint16_t>(squashed < kLeast           ? kLeast
-                                                     : squashed > 65536 - kLeast ? 65536 - kLeast
-                                                                                 : squashed);
+    model.probability_of_one = within_limits(squashed);
     bit = coder.bit(model, bit);
     const int32_t error = (static_cast<int32_t>(bit << 16) - static_cast<int32_t>(squashed)) >> 4;
+    std::array<int32_t, kMaxContexts>& weights = weights_[set];
     for (size_t i = 0; i < n; ++i) {
       weights[i] = std::clamp(weights[i] + ((logits[i] * error * kLearning) >> 16), -kGreatestWeight, kGreatestWeight);
       slots_[contexts[i]].update(bit);
     }
     return bit;
+  }
+
+  // What code() would spend on a 0 and on a 1, in 1/256 bit; nothing is learned.
+  struct Price {
+    uint32_t of[2];
+  };
+  Price price(const uint32_t* contexts, size_t n, size_t set) const {
+    int32_t logits[kMaxContexts];
+    const uint32_t one = within_limits(mix(contexts, n, set, logits));
+    return {{bit_mixer::kBitCost[(65536 - one) >> 4], bit_mixer::kBitCost[one >> 4]}};
   }
 
   // What was learned counts for `trusted` bits a context at most: the next ones teach faster.
@@ -99,6 +114,27 @@ class BitMixer {
  private:
   static constexpr int kSlowest = 80;  // a slot moves by 1/(seen + 1.5) of the error
   static constexpr int32_t kFirstWeight = 12000, kLearning = 28, kGreatestWeight = 1 << 22;
+
+  static uint16_t within_limits(uint32_t probability) {
+    constexpr uint32_t kLeast = geomcodec::AdaptiveBit::kCertain;
+    return static_cast<uint16_t>(std::clamp(probability, kLeast, 65536 - kLeast));
+  }
+
+  // Probability of 1 in 1/65536, and the logits it was mixed of.
+  uint32_t mix(const uint32_t* contexts, size_t n, size_t set, int32_t* logits) const {
+    const std::array<int32_t, kMaxContexts>& weights = weights_[set];
+    int64_t sum = 0;
+    for (size_t i = 0; i < n; ++i) {
+      const Slot& slot = slots_[contexts[i]];
+      logits[i] = bit_mixer::kStretch[slot.probability >> 4] * kConfidence[slot.seen] / 256;
+      sum += int64_t{weights[i]} * logits[i];
+    }
+    const int64_t logit = sum / bit_mixer::kWeightOne;
+    const int within = static_cast<int>(logit < -bit_mixer::kLimit  ? -bit_mixer::kLimit
+                                        : logit > bit_mixer::kLimit ? bit_mixer::kLimit
+                                                                    : logit);
+    return bit_mixer::kSquash[static_cast<size_t>(within + bit_mixer::kLimit)];
+  }
 
   // What a slot's estimate is worth after so many bits, /256.
   static constexpr auto kConfidence = [] {

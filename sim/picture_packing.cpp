@@ -43,10 +43,11 @@ struct PicturePacker::State {
   PictureSyntax syntax;
 
   template <class Coder>
-  bool code(Coder& coder, bool stands_alone, PlaneView<const uint32_t> surface, Learned& learned) {
+  bool code(Coder& coder, bool stands_alone, PlaneView<const uint32_t> surface, Learned& learned,
+            mpeg1::MacroblockPrices* prices = nullptr) {
     learned = stands_alone ? Learned() : taught;
     if (!stands_alone) learned.mixer.loosen(kTrusted);
-    return packing::PictureCoder<Coder>(coder, learned, syntax, surface, columns, rows).code();
+    return packing::PictureCoder<Coder>(coder, learned, syntax, surface, columns, rows, prices).code();
   }
 
   Bytes pack(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface, Learned& learned) {
@@ -81,6 +82,17 @@ uint64_t PicturePacker::packed_size(std::span<const uint8_t> mpeg1, bool stands_
   Learned learned;
   const Bytes packed = state_->pack(mpeg1, stands_alone, surface, learned);
   return packed.empty() ? mpeg1.size() : packed.size();
+}
+
+bool PicturePacker::prices(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface,
+                           std::vector<mpeg1::MacroblockPrices>& out) {
+  State& s = *state_;
+  const size_t start = picture_start(mpeg1);
+  if (!read_picture(mpeg1.subspan(start), s.columns, s.rows, s.syntax)) return false;
+  out.resize(s.syntax.macroblocks.size());
+  RangeEncoder coder;
+  Learned learned;
+  return s.code(coder, stands_alone, surface, learned, out.data());
 }
 
 void PicturePacker::forget() {

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "base/file_io.h"
 #include "base/image.h"
 #include "base/result.h"
+#include "mpeg1/mpeg1.h"
 
 namespace pac::sim {
 
@@ -30,6 +32,11 @@ class PicturePacker {
   Bytes pack(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface);
   // The size pack() would give, or that of mpeg1; nothing is learned.
   uint64_t packed_size(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface);
+
+  // What each decision about the picture's macroblocks costs here: of the decision itself, and of what would have been
+  // coded otherwise. For an encoder that codes it again; nothing is learned. False where there is nothing to pack.
+  bool prices(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface,
+              std::vector<mpeg1::MacroblockPrices>& out);
 
   // A picture that stands alone was sent as it is: the next ones begin anew. On the receiving side.
   void forget();
