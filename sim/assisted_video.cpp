@@ -139,20 +139,29 @@ double key_quantizer_for(const AssistedVideoOptions& options) {
   return std::max(1.0, options.quantizer_scale / kKeyRatio);
 }
 
-// A bit rate counts what is sent: each picture that the encoder offers is packed for its size.
+// Why a picture is coded again. It is packed: what its levels cost there, the first coding tells. A bit rate counts what
+// is sent: each picture that the encoder offers is packed for its size.
 struct PackedSearch {
-  QuantizerSearch search;
-  PicturePacker* packer;  // null: pictures are sent as they are
+  std::optional<QuantizerSearch> search;  // of a bit rate
+  PicturePacker* packer;                  // null: pictures are sent as they are
   bool is_key;
   PlaneView<const uint32_t> surface;
   const Bytes& out;
   size_t begin;  // of the picture in `out`
+  mpeg1::PictureOptions& picture;
+  std::vector<mpeg1::MacroblockPrices>* prices;  // null: Annex B's
 
   static double code_again(void* context, double scale, uint64_t size_bytes) {
     PackedSearch& self = *static_cast<PackedSearch*>(context);
-    if (self.packer != nullptr)
-      size_bytes = self.packer->packed_size(std::span(self.out).subspan(self.begin), self.is_key, self.surface);
-    return self.search.next(scale, size_bytes);
+    const std::span<const uint8_t> coded = std::span(self.out).subspan(self.begin);
+    if (self.prices != nullptr && self.picture.prices.empty() &&
+        self.packer->prices(coded, self.is_key, self.surface, *self.prices)) {
+      self.picture.prices = *self.prices;
+      return scale;
+    }
+    if (!self.search) return 0;
+    if (self.packer != nullptr) size_bytes = self.packer->packed_size(coded, self.is_key, self.surface);
+    return self.search->next(scale, size_bytes);
   }
 };
 
@@ -166,6 +175,7 @@ struct AssistedEncoder::State {
   RgbImage difference;
   LeakyBucket bucket;
   PicturePacker packer;
+  std::vector<mpeg1::MacroblockPrices> prices;
   Bytes picture;                        // of the last frame
   double last_quantizer = 0;            // of a picture between two that stand alone; 0: none yet
   std::optional<ModelFlow> block_flow;  // of block prediction: where the search for vectors begins
@@ -193,6 +203,7 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
                                                        RgbImage(scene.width, scene.height),
                                                        LeakyBucket(options.rate),
                                                        PicturePacker(scene.width, scene.height),
+                                                       {},
                                                        {},
                                                        0,
                                                        block_flow_for(scene, options, isa)}));
@@ -238,14 +249,14 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   picture.quantizer_scale = is_key ? key_quantizer_for(wanted) : wanted.quantizer_scale;
   const bool packs = replaced && options.is_packed;
   const size_t before = out.size(), begin = before + 1;  // a byte before the picture
-  PackedSearch search{QuantizerSearch(s.bucket.next(), frame.overhead_bytes + 1),
-                      packs ? &s.packer : nullptr,
-                      is_key,
-                      s.shared.surface(),
-                      out,
-                      begin};
+  const bool is_priced = packs && options.effort != mpeg1::Effort::fast;
+  PackedSearch search{std::nullopt, packs ? &s.packer : nullptr, is_key,  s.shared.surface(), out,
+                      begin,        picture, is_priced ? &s.prices : nullptr};
   if (options.rate.is_on()) {
+    search.search.emplace(s.bucket.next(), frame.overhead_bytes + 1);
     picture.quantizer_scale = s.first_guess(is_key);
+  }
+  if (search.search || is_priced) {
     picture.code_again = PackedSearch::code_again;
     picture.code_again_context = &search;
   }
