@@ -307,8 +307,7 @@ class PictureCoder {
     const uint32_t around = level_of(e.counts, 13);
     return {kLayout.last[0] + s.pk * 8 + std::min(count, 7u), kLayout.last[1] + s.pk * kLevelsSeen + around,
             kLayout.last[2] + (s.plane * 32 + std::min(count, 31u)) * kLevelsSeen + around,
-            kLayout.last[3] + s.pk * 16 + s.mean,
-            kLayout.last[4] + s.pk * kLevelsSeen + level_of(e.rest[s.k] / 8, 13)};
+            kLayout.last[3] + s.pk * 16 + s.mean, kLayout.last[4] + s.pk * kLevelsSeen + level_of(e.rest[s.k] / 8, 13)};
   }
   std::array<uint32_t, 6> size_at(const Spot& s, uint32_t found) const {
     const uint32_t pj = s.plane * 16 + found;
@@ -382,8 +381,12 @@ class PictureCoder {
   void price_kinds() {
     const BitMixer::Price skipped = price(skipped_context()), kind = price(kLayout.kind + around(is_intra));
     const BitMixer::Price moving = price(kLayout.moves + around(moves));
-    prices_here() = {whole(skipped.of[1]), whole(skipped.of[0] + kind.of[0]), whole(skipped.of[0] + kind.of[1]),
-                     whole(moving.of[0]),  whole(moving.of[1]),               {}};
+    prices_here() = {whole(skipped.of[1]),
+                     whole(skipped.of[0] + kind.of[0]),
+                     whole(skipped.of[0] + kind.of[1]),
+                     whole(moving.of[0]),
+                     whole(moving.of[1]),
+                     {}};
   }
 
   // Of a position where a level of `size` is; 0: none is.

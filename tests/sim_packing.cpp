@@ -2,13 +2,16 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
+#include "base/bd_rate.h"
 #include "mpeg1/mpeg1.h"
 #include "sim/client.h"
 #include "sim/difference.h"
 #include "sim/picture_packing.h"
+#include "sim/picture_syntax.h"
 #include "sim/server.h"
 #include "tests/support/small_scene.h"
 
@@ -183,7 +186,7 @@ TEST_CASE("bytes without end and bytes of one value are refused or unpack to one
 }
 
 // Bytes of `frames` pictures, and the hash of what was shown last.
-std::pair<uint64_t, uint64_t> served(bool is_packed) {
+std::pair<uint64_t, uint64_t> served(bool is_packed, mpeg1::Effort effort) {
   sim::SceneSet scene = test::small_scene(false);
   const auto split = sim::make_split("texture", scene, {4});
   REQUIRE(split.ok());
@@ -193,6 +196,7 @@ std::pair<uint64_t, uint64_t> served(bool is_packed) {
   options.codec = sim::Codec::mpeg1;
   options.video.quantizer_scale = 8;
   options.video.is_packed = is_packed;
+  options.video.effort = effort;
   auto server = sim::Server::create(std::move(scene), *split, options);
   REQUIRE(server.ok());
   auto client = sim::Client::create(server->session(), {});
@@ -211,10 +215,143 @@ std::pair<uint64_t, uint64_t> served(bool is_packed) {
 }
 
 TEST_CASE("server and client: the same pictures, a tenth fewer bytes at least, packets included") {
-  const auto packed = served(true), plain = served(false);
+  const auto packed = served(true, mpeg1::Effort::fast), plain = served(false, mpeg1::Effort::fast);
   MESSAGE("packed " << packed.first << " bytes, else " << plain.first);
   CHECK(packed.second == plain.second);
   CHECK(10 * packed.first < 9 * plain.first);
+}
+
+TEST_CASE("above effort fast pictures are coded for being packed, and the client shows what the server does") {
+  const auto packed = served(true, mpeg1::Effort::normal), plain = served(false, mpeg1::Effort::normal);
+  MESSAGE("packed " << packed.first << " bytes, else " << plain.first);
+  CHECK(packed.second != plain.second);  // other levels
+  CHECK(20 * packed.first < 19 * plain.first);
+}
+
+// Noise that changes over a reference of one color: every kind of level, hardly a vector.
+Frame420 noise_at(int number) {
+  Frame420 frame = frame_at(0);
+  uint32_t state = static_cast<uint32_t>(77 + number);
+  for (GrayImage* plane : {&frame.cb, &frame.cr})
+    for (int y = 0; y < plane->height(); ++y)
+      for (int x = 0; x < plane->width(); ++x) plane->row(y)[x] = static_cast<uint8_t>(124 + (plane->row(y)[x] & 7));
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      state = state * 1664525u + 1013904223u;
+      const int swing = (x / 16 + y / 16) % 4 * 12;
+      frame.y.row(y)[x] = static_cast<uint8_t>(128 + (static_cast<int>(state >> 24) - 128) * swing / 128);
+    }
+  return frame;
+}
+
+struct OnePicture {
+  Bytes mpeg1;
+  int64_t squared_error = 0;
+};
+
+// P, predicted from gray, at the prices of its own first coding or at none.
+OnePicture code_noise(sim::PicturePacker& packer, double quantizer, bool is_priced) {
+  Frame420 gray(kWidth, kHeight);
+  for (GrayImage* plane : {&gray.y, &gray.cb, &gray.cr})
+    for (int y = 0; y < plane->height(); ++y) std::fill_n(plane->row(y), plane->width(), uint8_t{128});
+  mpeg1::SequenceOptions options;
+  options.width = kWidth;
+  options.height = kHeight;
+  options.effort = mpeg1::Effort::best;
+  auto encoder = mpeg1::Encoder::create(options);
+  REQUIRE(encoder.ok());
+  struct Caller {
+    sim::PicturePacker& packer;
+    OnePicture& out;
+    mpeg1::PictureOptions& picture;
+    std::vector<mpeg1::MacroblockPrices> prices;
+  };
+  OnePicture result;
+  mpeg1::PictureOptions picture;
+  Caller caller{packer, result, picture, {}};
+  picture.reference = &gray;
+  picture.type = mpeg1::PictureType::P;
+  picture.quantizer_scale = quantizer;
+  picture.code_again_context = &caller;
+  picture.code_again = [](void* context, double scale, uint64_t) -> double {
+    Caller& c = *static_cast<Caller*>(context);
+    if (!c.picture.prices.empty() || !c.packer.prices(c.out.mpeg1, true, {}, c.prices)) return 0;
+    c.picture.prices = c.prices;
+    return scale;
+  };
+  if (!is_priced) picture.code_again = nullptr;
+  const Frame420 frame = noise_at(1);
+  REQUIRE(encoder->add(frame, result.mpeg1, picture).ok());
+  const mpeg1::FrameView shown = encoder->reconstruction();
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const int difference = shown.y.row(y)[x] - frame.y.row(y)[x];
+      result.squared_error += difference * difference;
+    }
+  return result;
+}
+
+TEST_CASE("at the packer's prices a picture takes fewer packed bytes at equal error") {
+  sim::PicturePacker packer(kWidth, kHeight);
+  std::vector<RatePoint> curves[2];
+  for (const double quantizer : {3.0, 6.0, 12.0, 24.0})
+    for (const bool is_priced : {false, true}) {
+      const OnePicture coded = code_noise(packer, quantizer, is_priced);
+      curves[is_priced].push_back({static_cast<double>(packer.packed_size(coded.mpeg1, true, {})),
+                                   -std::log2(static_cast<double>(coded.squared_error))});
+    }
+  const auto gain = bd_rate(curves[0], curves[1]);
+  REQUIRE(gain.ok());
+  MESSAGE("bytes at equal error: " << gain->percent << " %");
+  CHECK(gain->percent < -1);
+}
+
+TEST_CASE("the prices of what a picture consists of add up to its packed size") {
+  sim::PicturePacker packer(kWidth, kHeight);
+  const OnePicture coded = code_noise(packer, 5, false);
+  std::vector<mpeg1::MacroblockPrices> prices;
+  REQUIRE(packer.prices(coded.mpeg1, true, {}, prices));
+  constexpr uint8_t kStart[] = {0, 0, 1, 0};
+  const auto start = std::search(coded.mpeg1.begin(), coded.mpeg1.end(), std::begin(kStart), std::end(kStart));
+  sim::PictureSyntax syntax;
+  REQUIRE(sim::read_picture(std::span(coded.mpeg1).subspan(static_cast<size_t>(start - coded.mpeg1.begin())), 6, 5,
+                            syntax));
+  uint64_t paid = 0;  // / 256 bit
+  for (size_t i = 0; i < syntax.macroblocks.size(); ++i) {
+    const mpeg1::Macroblock& m = syntax.macroblocks[i];
+    REQUIRE(m.kind != mpeg1::MacroblockKind::intra);
+    REQUIRE(m.vector == mpeg1::MotionVector{});
+    if (m.kind == mpeg1::MacroblockKind::skipped) {
+      paid += prices[i].skipped;
+      continue;
+    }
+    paid += prices[i].inter + prices[i].still;
+    uint32_t token = m.first_token;
+    for (int block = 0; block < 6; ++block) {
+      const mpeg1::BlockPrices& price = prices[i].blocks[block];
+      const bool is_coded = (m.pattern & 32 >> block) != 0;
+      paid += is_coded ? price.coded : price.left_out;
+      size_t position = 0;
+      for (int left = m.counts[block]; left > 0; --left, ++token, ++position) {
+        for (int run = mpeg1::token_run(syntax.tokens[token]); run > 0; --run) paid += price.zero[position++];
+        const int size = std::abs(mpeg1::token_level(syntax.tokens[token])), listed = std::min(size, 4);
+        paid += price.level[position] + price.size[position][listed - 1] +
+                static_cast<uint64_t>(size - listed) * price.step[position];
+        paid += left > 1 ? price.more[position] : price.last[position];
+      }
+    }
+  }
+  const double bits = static_cast<double>(paid) / 256,
+               size_bits = 8 * static_cast<double>(packer.packed_size(coded.mpeg1, true, {}));
+  MESSAGE("priced " << bits << " bits, packed " << size_bits);
+  CHECK(bits > 0.93 * size_bits);  // headers, steps of large levels
+  CHECK(bits < 1.02 * size_bits);
+}
+
+TEST_CASE("what is no picture has no prices") {
+  sim::PicturePacker packer(kWidth, kHeight);
+  std::vector<mpeg1::MacroblockPrices> prices;
+  CHECK(!packer.prices(Bytes(40, 7), true, {}, prices));
 }
 
 }  // namespace
