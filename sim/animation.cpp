@@ -18,6 +18,12 @@ Result<void> check(const AnimationOptions& options) {
     return Failure{Error::bad_argument, 0, "frames a second must be 1..60"};
   if (options.codec == VideoCodec::mpeg1 && options.render.transmit_model)
     return Failure{Error::bad_argument, 0, "MPEG-1 video is coded against a model that is resident"};
+  if (options.codec == VideoCodec::mjpeg && options.still_prediction != Prediction::none) {
+    if (options.still_prediction == Prediction::block)
+      return Failure{Error::bad_argument, 0, "stills are predicted by the model or from nothing"};
+    if (options.render.transmit_model)
+      return Failure{Error::bad_argument, 0, "stills are predicted by a model that is resident"};
+  }
   return {};
 }
 
@@ -37,7 +43,10 @@ bool same_picture(const RgbImage& a, const RgbImage& b) {
 Result<void> run_mjpeg(SceneSet scene, const CameraPath& path, const AnimationOptions& options,
                        const AnimationSink& sink, Animation& out) {
   PAC_CHECK(pose(options, 0, scene.fine));
-  PAC_TRY(Server server, Server::create(std::move(scene), out.split, server_options_for(options, out)));
+  ServerOptions server_options = server_options_for(options, out);
+  if (options.still_prediction == Prediction::model) server_options.codec = Codec::predicted_jpeg;
+  server_options.video.key_interval = options.video.key_interval;
+  PAC_TRY(Server server, Server::create(std::move(scene), out.split, server_options));
   PAC_TRY(Client client, Client::create(server.session(), client_options_for(options)));
   out.resident_model_bytes = options.render.transmit_model ? 0 : server.session().size();
   if (sink.session) sink.session(server.session());

@@ -32,6 +32,9 @@ struct AnimationOptions {
   int frames = 48;  // >= 1
   VideoCodec codec = VideoCodec::mjpeg;
   double quality = 15;  // mjpeg: of each image-based frame, (0, 100]; D is matched to that frame's bytes
+  // mjpeg: none, or model: D is H against what the frame before predicts (sim/predicted_stills.h); stills that stand
+  // alone: video.key_interval.
+  Prediction still_prediction = Prediction::none;
 
   // mpeg1. The whole sequence is held in memory, some 14 bytes a pixel: its sizes are matched by a search over the
   // quantizer of D, to 1 % and never above the image-based arm's.

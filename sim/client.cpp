@@ -8,6 +8,7 @@
 #include "sim/assisted_video.h"
 #include "sim/difference.h"
 #include "sim/packet.h"
+#include "sim/predicted_stills.h"
 #include "sim/screen_model.h"
 
 namespace pac::sim {
@@ -24,10 +25,14 @@ struct Client::State {
   uint32_t frame_number = 0;
   bool exact = true;  // no picture that this one depends on was lost
   bool started = false;
-  DepthImage depth;  // of L: codec mpeg1
+  DepthImage depth;  // of L: where pictures are predicted
   IdImage id;
   std::optional<AssistedDecoder> video;
+  std::optional<StillPredictor> stills;
   PacketReader packets;
+
+  Result<void> prepare(const FramePacket& packet);
+  Result<bool> show_still(const FramePacket& packet, RgbView picture);
 };
 
 namespace {
@@ -40,6 +45,40 @@ Result<RgbImage> receive_jpeg(const FramePacket& packet, const RgbImage& low, co
 }
 
 }  // namespace
+
+// What the packet's codec needs before L is drawn, and what its JPEG says of itself.
+Result<void> Client::State::prepare(const FramePacket& packet) {
+  if (packet.codec != Codec::jpeg) {
+    if (packet.has_model) return Failure{Error::unsupported, 6, "video against a transmitted model"};
+    const AssistedScene seen{width, height, &model, quality.samples};
+    if (packet.codec == Codec::mpeg1 && !video) {
+      Limits limits = options.limits;
+      limits.max_pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
+      PAC_TRY(video, AssistedDecoder::create(seen, limits, options.isa));
+    }
+    if (packet.codec == Codec::predicted_jpeg && !stills) stills.emplace(seen, options.isa);
+    if (depth.width() == 0) depth = DepthImage(width, height), id = IdImage(width, height);
+  }
+  if (packet.codec == Codec::mpeg1) return {};
+  PacketStill still{false, packet.difference};
+  if (packet.codec == Codec::predicted_jpeg) {
+    PAC_TRY(still, read_packet_still(packet.difference));
+  }
+  // The size first: a hostile JPEG header must not make us allocate another picture than ours.
+  PAC_TRY(const jpeg::Info info, jpeg::read_info(still.jpeg, options.limits));
+  if (info.width != width || info.height != height)
+    return Failure{Error::corrupt, 0, "difference image has another size than the session"};
+  return {};
+}
+
+// Whether the picture stood alone. One that is damaged changes nothing.
+Result<bool> Client::State::show_still(const FramePacket& packet, RgbView picture) {
+  PAC_TRY(const PacketStill still, read_packet_still(packet.difference));
+  PAC_TRY(const RgbImage difference, jpeg::decode(still.jpeg, options.limits, options.isa));
+  stills->predict(still.stands_alone, low.view(), depth.view(), id.view(), packet.camera, packet.objects);
+  stills->show(difference.view(), picture);
+  return still.stands_alone;
+}
 
 Result<Client> Client::create(std::span<const uint8_t> session, const ClientOptions& options) {
   PAC_TRY(const SessionMessage message, read_session_message(session));
@@ -70,6 +109,7 @@ Result<Client> Client::create(std::span<const uint8_t> session, const ClientOpti
                                               {},
                                               {},
                                               std::nullopt,
+                                              std::nullopt,
                                               std::move(packets)}));
 }
 
@@ -95,22 +135,7 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   PAC_TRY(const FramePacket packet, state.packets.read(bytes));
   if (packet.has_model == state.resident)
     return Failure{Error::corrupt, 7, "packet and session disagree about where the model is"};
-  const bool is_video = packet.codec == Codec::mpeg1;
-  if (is_video && packet.has_model) return Failure{Error::unsupported, 6, "video against a transmitted model"};
-  if (is_video && !state.video) {
-    const AssistedScene seen{state.width, state.height, &state.model, state.quality.samples};
-    Limits limits = state.options.limits;
-    limits.max_pixels = static_cast<uint64_t>(state.width) * static_cast<uint64_t>(state.height);
-    PAC_TRY(state.video, AssistedDecoder::create(seen, limits, state.options.isa));
-    state.depth = DepthImage(state.width, state.height);
-    state.id = IdImage(state.width, state.height);
-  }
-  if (!is_video) {
-    // The size first: a hostile JPEG header must not make us allocate another picture than ours.
-    PAC_TRY(const jpeg::Info info, jpeg::read_info(packet.difference, state.options.limits));
-    if (info.width != state.width || info.height != state.height)
-      return Failure{Error::corrupt, 0, "difference image has another size than the session"};
-  }
+  PAC_CHECK(state.prepare(packet));
 
   const raster::RenderTargets targets{state.low.view(), state.depth.view(), state.id.view()};
   if (packet.has_model) {
@@ -125,13 +150,19 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   const uint64_t hash = image_hash(state.low.view());
   if ((packet.is_short ? static_cast<uint32_t>(hash) : hash) != packet.low_hash)
     return Failure{Error::corrupt, packet.is_short ? 3u : 96u, "low-quality rendering differs from the server's"};
-  if (!is_video) return receive_jpeg(packet, state.low, state.options);
+  if (packet.codec == Codec::jpeg) return receive_jpeg(packet, state.low, state.options);
 
   RgbImage picture(state.width, state.height);
-  state.exact = state.exact && in_order;
-  PAC_CHECK(state.video->decode(packet.difference, state.low.view(), state.depth.view(), state.id.view(), packet.camera,
-                                picture.view(), packet.objects));
-  state.exact = state.exact || state.video->last_was_key();
+  const bool was_exact = state.exact && in_order;
+  state.exact = false;  // where this picture fails, the next one depends on a lost one
+  if (packet.codec == Codec::mpeg1) {
+    PAC_CHECK(state.video->decode(packet.difference, state.low.view(), state.depth.view(), state.id.view(),
+                                  packet.camera, picture.view(), packet.objects));
+    state.exact = was_exact || state.video->last_was_key();
+  } else {
+    PAC_TRY(const bool stands_alone, state.show_still(packet, picture.view()));
+    state.exact = was_exact || stands_alone;
+  }
   state.started = true;
   return picture;
 }

@@ -163,4 +163,20 @@ void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> c
   has_kept_ = true;
 }
 
+void ModelPredictor::add(const Frame420& before, const Frame420& after) {
+  constexpr int kLargest = 255 << kCarriedBits;
+  for (int component = 0; component < 3; ++component) {
+    BorderedPlane& kept = kept_[component];
+    for (int row = 0; row < kept.height(); ++row) {
+      const uint8_t *from = plane(before, component).row(row), *to = plane(after, component).row(row);
+      int16_t* sum = kept.row(row);
+      for (int x = 0; x < kept.width(); ++x) {
+        const int changed = sum[x] + (to[x] - from[x]) * (1 << kCarriedBits);
+        sum[x] = static_cast<int16_t>(std::clamp(changed, -kLargest, kLargest));
+      }
+    }
+    kept.extend();
+  }
+}
+
 }  // namespace pac::sim

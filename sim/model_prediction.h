@@ -46,6 +46,9 @@ class ModelPredictor {
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr);
 
+  // What was kept changes by the difference of two pictures of the same frame: more was decoded of it.
+  void add(const Frame420& before, const Frame420& after);
+
   // The surface that L shows in the frame whose reference was asked for last, at columns and rows divisible by 4 and
   // in the last of each; until keep().
   PlaneView<const uint32_t> surface() const { return surface_.view(); }

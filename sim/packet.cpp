@@ -139,7 +139,7 @@ Result<FramePacket> read_frame_packet(std::span<const uint8_t> bytes, std::span<
   reader.raw(6);
   FramePacket packet;
   const uint8_t codec = reader.u8(), flags = reader.u8();
-  if (codec != static_cast<uint8_t>(Codec::jpeg) && codec != static_cast<uint8_t>(Codec::mpeg1))
+  if (codec < static_cast<uint8_t>(Codec::jpeg) || codec > static_cast<uint8_t>(Codec::predicted_jpeg))
     return Failure{Error::unsupported, 6, "unknown codec"};
   if ((flags & ~(kHasModel | kMovesObjects)) != 0) return Failure{Error::unsupported, 7, "unknown flag"};
   packet.codec = static_cast<Codec>(codec);

@@ -29,7 +29,7 @@
 
 namespace pac::sim {
 
-enum class Codec : uint8_t { jpeg = 1, mpeg1 = 2 };
+enum class Codec : uint8_t { jpeg = 1, mpeg1 = 2, predicted_jpeg = 3 };  // the last: sim/predicted_stills.h
 
 constexpr uint16_t kProtocolVersion = 1;
 constexpr size_t kFramePacketOverhead = 116;  // bytes of a frame packet beside objects, model and difference

@@ -3,9 +3,11 @@
 #include <optional>
 #include <utility>
 
+#include "jpeg/jpeg.h"
 #include "sim/difference.h"
 #include "sim/frame_renderer.h"
 #include "sim/packet.h"
+#include "sim/predicted_stills.h"
 
 namespace pac::sim {
 
@@ -16,8 +18,15 @@ struct Server::State {
   Bytes session;
   ServerFrame last;
   std::optional<AssistedEncoder> video;
+  std::optional<StillPredictor> stills;
+  int since_key = -1;  // of stills; -1: none yet
   bool key_requested = false;
   PacketWriter packets;
+
+  bool next_still_stands_alone() const {
+    const int interval = options.video.key_interval;
+    return key_requested || since_key < 0 || (interval > 0 && since_key + 1 >= interval);
+  }
 };
 
 namespace {
@@ -43,11 +52,16 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
                                                         options.height, options.threads, options.isa));
   Bytes session = make_session(renderer.low_scene(), split, options);
   std::optional<AssistedEncoder> video;
-  if (options.codec == Codec::mpeg1) {
+  std::optional<StillPredictor> stills;
+  if (options.codec != Codec::jpeg) {
     if (options.transmit_model)
       return Failure{Error::bad_argument, 0, "video is coded against a model that is resident"};
     const AssistedScene seen{options.width, options.height, &renderer.low_scene(), split.low.samples};
-    PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
+    if (options.codec == Codec::mpeg1) {
+      PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
+    } else {
+      stills.emplace(seen, options.isa);
+    }
   }
   // A transmitted model travels where it is.
   PacketWriter packets(options.transmit_model ? Transforms{} : transforms_of(renderer.low_scene()));
@@ -57,6 +71,8 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
                                               std::move(session),
                                               {},
                                               std::move(video),
+                                              std::move(stills),
+                                              -1,
                                               false,
                                               std::move(packets)}));
 }
@@ -88,7 +104,7 @@ Result<Bytes> Server::frame(uint32_t frame_number, const raster::Camera& camera)
 }
 
 Result<FrameImages> Server::render(const raster::Camera& camera) {
-  return state_->renderer.render(state_->scene, camera, state_->video.has_value());
+  return state_->renderer.render(state_->scene, camera, state_->options.codec != Codec::jpeg);
 }
 
 void Server::request_key() {
@@ -119,6 +135,21 @@ Result<CodedFrame> code_jpeg(const FrameImages& images, const ServerOptions& opt
   return out;
 }
 
+// D of the frame against its prediction takes the place of images.difference.
+Result<CodedFrame> code_still(FrameImages& images, const raster::Camera& camera, const ServerOptions& options,
+                              StillPredictor& stills, bool key, uint64_t target_bytes) {
+  const ConstRgbView predicted =
+      stills.predict(key, images.low.view(), images.depth.view(), images.id.view(), camera, images.objects);
+  difference_image(images.high.view(), predicted, images.difference.view(), options.isa);
+  PAC_TRY(CodedFrame out, code_jpeg(images, options, target_bytes > 1 ? target_bytes - 1 : target_bytes));
+  PAC_TRY(const RgbImage decoded, jpeg::decode(out.bytes, {}, options.isa));
+  stills.show(decoded.view(), out.composite.view());
+  out.picture = out.bytes;
+  out.bytes.insert(out.bytes.begin(), key ? uint8_t{1} : uint8_t{0});
+  out.video.is_key = key;
+  return out;
+}
+
 Result<CodedFrame> code_video(const FrameImages& images, const raster::Camera& camera, const ServerOptions& options,
                               AssistedEncoder& video, bool key, uint64_t overhead_bytes) {
   CodedFrame out;
@@ -143,11 +174,15 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   packet.has_model = options.transmit_model;
   packet.camera = camera;
   if (!options.transmit_model) packet.objects = images.objects;
-  const bool is_key = state_->video && state_->video->next_is_key(state_->key_requested);
+  const bool is_key = state_->stills ? state_->next_still_stands_alone()
+                                     : state_->video && state_->video->next_is_key(state_->key_requested);
   const uint64_t overhead = state_->packets.overhead_bytes(packet, is_key);
   PAC_TRY(CodedFrame coded, state_->video ? code_video(images, camera, options, *state_->video, is_key, overhead)
-                                          : code_jpeg(images, options, target_bytes));
+                            : state_->stills
+                                ? code_still(images, camera, options, *state_->stills, is_key, target_bytes)
+                                : code_jpeg(images, options, target_bytes));
   state_->key_requested = false;
+  state_->since_key = is_key ? 0 : state_->since_key + 1;
 
   packet.quality = coded.quality;
   packet.low_hash = image_hash(images.low.view());
@@ -164,7 +199,7 @@ Result<Bytes> Server::send(uint32_t frame_number, const raster::Camera& camera, 
   last.quality = coded.quality;
   last.model_bytes = images.model.bytes.size();
   last.difference_bytes = coded.bytes.size();
-  last.code = std::move(state_->video ? coded.picture : coded.bytes);
+  last.code = std::move(options.codec != Codec::jpeg ? coded.picture : coded.bytes);
   last.packet_bytes = bytes.size();
   const bool is_whole = bytes.size() >= kFramePacketOverhead + last.model_bytes + last.difference_bytes;
   last.object_bytes = is_whole ? bytes.size() - kFramePacketOverhead - last.model_bytes - last.difference_bytes : 0;

@@ -27,18 +27,20 @@ struct ServerOptions {
   bool transmit_model = false;    // false: the model is resident, in the session message
   CodingOptions coding;           // codec jpeg
   Codec codec = Codec::jpeg;
-  AssistedVideoOptions video;  // codec mpeg1 (resident models only); quality and sizes above mean nothing to it
-  int threads = 1;             // of the renderer; 0 = all. Results never depend on it
+  // codec mpeg1 (resident models only): quality and sizes above mean nothing to it. Of predicted_jpeg (resident models
+  // only, too) key_interval alone.
+  AssistedVideoOptions video;
+  int threads = 1;  // of the renderer; 0 = all. Results never depend on it
   Isa isa = best_isa();
 };
 
 // What the server knows of the frame it just sent; valid until the next frame() call.
 struct ServerFrame {
-  RgbImage high, low, difference;
-  RgbImage composite;    // what a client will show, bit for bit
-  double quality = 0;    // coded quality of D; codec mpeg1: quantizer_scale
-  AssistedReport video;  // codec mpeg1
-  Bytes code;            // of the difference: JPEG, or MPEG-1 as it was before it was packed
+  RgbImage high, low, difference;  // predicted_jpeg: difference is H against the prediction
+  RgbImage composite;              // what a client will show, bit for bit
+  double quality = 0;              // coded quality of D; codec mpeg1: quantizer_scale
+  AssistedReport video;            // codec mpeg1
+  Bytes code;                      // of the difference: JPEG, or MPEG-1 as it was before it was packed
   // object_bytes: of a whole packet, what it says of moved objects (of a short one they are part of the packet).
   uint64_t model_bytes = 0, difference_bytes = 0, object_bytes = 0, packet_bytes = 0;
 };
@@ -74,7 +76,7 @@ class Server {
   // The leaky bucket of options.video.rate; null without one.
   const LeakyBucket* bucket() const;
 
-  // The next frame stands alone (codec mpeg1): what a client asks for that has lost one.
+  // The next frame stands alone (codec mpeg1, predicted_jpeg): what a client asks for that has lost one.
   void request_key();
 
  private:

@@ -189,7 +189,7 @@ TEST_CASE("each rejected field has its own error, although the checksum is right
   const Bytes packet = one_packet(server);
   CHECK(std::string(frame_failure(patched(packet, 0, {'X'})).text) == "not a message of this kind");
   CHECK(frame_failure(patched(packet, 4, {9})).error == Error::unsupported);
-  CHECK(std::string(frame_failure(patched(packet, 6, {3})).text) == "unknown codec");
+  CHECK(std::string(frame_failure(patched(packet, 6, {4})).text) == "unknown codec");
   CHECK(std::string(frame_failure(patched(packet, 7, {4})).text) == "unknown flag");
   CHECK(std::string(frame_failure(patched(packet, 7, {2})).text) ==
         "packet moves objects that the model does not have");

@@ -27,7 +27,8 @@ void declare_video(Options& options, Request& request) {
   options.choice<Prediction>(
       "--prediction", video.prediction,
       {{"none", Prediction::none}, {"block", Prediction::block}, {"model", Prediction::model}},
-      "mpeg1: of the polygon-assisted pictures: from nothing, by moved blocks, by the model (model)");
+      "of the polygon-assisted pictures: from nothing, by moved blocks (mpeg1), by the model (mpeg1: model; mjpeg: "
+      "none)");
   options.choice<Difference>("--difference", video.difference,
                              {{"halved", Difference::halved}, {"full", Difference::full}},
                              "mpeg1: 127+(H-L)/2 as the paper, or H predicted from L (full; block: halved)");
@@ -40,7 +41,7 @@ void declare_video(Options& options, Request& request) {
   options.real("--buffer", "SECONDS", request.animation.buffer_seconds, 0.1, 60,
                "--bit-rate: that the full bucket takes to run dry (1)");
   options.integer("--gop", "N", video.key_interval, 0, 132,
-                  "mpeg1: pictures from one that stands alone to the next, 0: the first only (132; --bit-rate: 0)");
+                  "pictures from one that stands alone to the next, 0: the first only (132; --bit-rate: 0)");
   options.choice<mpeg1::Effort>(
       "--effort", video.effort,
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
@@ -218,6 +219,9 @@ int run_animate(Args args) {
     return options.usage_error("--buffer says nothing without --bit-rate");
   if (options.given("--bit-rate") && animation.codec != sim::VideoCodec::mpeg1)
     return options.usage_error("--bit-rate needs --codec mpeg1");
+  if (options.given("--prediction")) animation.still_prediction = animation.video.prediction;
+  if (animation.codec == sim::VideoCodec::mjpeg && animation.still_prediction == sim::Prediction::block)
+    return options.usage_error("--prediction block needs --codec mpeg1");
   if (options.given("--bit-rate") && animation.video.prediction != sim::Prediction::model)
     return options.usage_error("--bit-rate needs --prediction model");
   animation.bit_rate_bps = static_cast<uint64_t>(request.bit_rate_bps);
