@@ -86,7 +86,8 @@ Result<void> run_mpeg1(SceneSet scene, const CameraPath& path, const AnimationOp
     shots.push_back({camera, std::move(images)});
   }
   PAC_CHECK(pose(options, 0, scene.fine));  // as the session message will have them
-  VideoAnimation both(options, {out.width, out.height, &renderer.low_scene(), out.split.low.samples});
+  VideoAnimation both(
+      options, {out.width, out.height, &renderer.low_scene(), out.split.low.samples, out.split.differs_in_light()});
   PAC_CHECK(both.choose(shots));
   ServerOptions server_options = server_options_for(options, out);
   server_options.codec = Codec::mpeg1;

@@ -10,6 +10,7 @@
 #include "sim/difference.h"
 #include "sim/difference_matrices.h"
 #include "sim/frame420.h"
+#include "sim/log_domain.h"
 #include "sim/model_prediction.h"
 #include "sim/model_vectors.h"
 #include "sim/object_motion.h"
@@ -21,7 +22,7 @@ namespace pac::sim {
 namespace {
 
 // The first byte of each frame: what the decoder must know before the picture.
-constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8, kPacked = 16;
+constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8, kPacked = 16, kRatio = 32;
 
 mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const AssistedVideoOptions& options) {
   mpeg1::SequenceOptions sequence;
@@ -43,9 +44,17 @@ mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const Assist
   return sequence;
 }
 
+AssistedVideoOptions settled(AssistedVideoOptions options, const AssistedScene& scene) {
+  const bool is_ratio = options.difference == Difference::full && scene.differs_in_light;
+  if (options.residual == Residual::by_scene) options.residual = is_ratio ? Residual::ratio : Residual::additive;
+  return options;
+}
+
 const char* problem_with(const AssistedVideoOptions& options) {
   if (options.prediction == Prediction::block && options.difference == Difference::full)
     return "block prediction codes halved differences";
+  if (options.residual == Residual::ratio && options.difference != Difference::full)
+    return "a residual of ratios is a full difference";
   if (!(options.quantizer_scale >= 1 && options.quantizer_scale <= 31)) return "quantizer_scale is outside 1..31";
   if (options.key_quantizer_scale != 0 && !(options.key_quantizer_scale >= 1 && options.key_quantizer_scale <= 31))
     return "key_quantizer_scale is outside 1..31";
@@ -61,17 +70,19 @@ class SharedState {
       : isa_(isa),
         base_(scene.width, scene.height),
         coded_(scene.width, scene.height),
+        codes_(scene.width, scene.height),
         predictor_(scene.width, scene.height, surfaces_of(*scene.low), first_sample(scene.samples).x / 256.0,
                    first_sample(scene.samples).y / 256.0, isa, movers_of(*scene.low)) {}
 
   // The picture that predicts this frame, or null where the codec's own does.
-  const Frame420* reference(Prediction prediction, Difference difference, bool is_key, ConstRgbView low,
-                            PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
-                            std::span<const glm::mat4> objects) {
+  const Frame420* reference(Prediction prediction, Difference difference, Residual residual, bool is_key,
+                            ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id,
+                            const raster::Camera& camera, std::span<const glm::mat4> objects) {
     is_full_ = difference == Difference::full;
+    is_ratio_ = residual == Residual::ratio;
     if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return nullptr;
     if (is_full_)
-      frame420_from_rgb(low, base_, isa_);
+      frame420_of(low, base_);
     else
       fill_gray();
     if (is_key || prediction == Prediction::none) predictor_.forget();
@@ -81,6 +92,12 @@ class SharedState {
   // Of the frame whose reference was asked for last; empty where it was the codec's own.
   PlaneView<const uint32_t> surface() const { return predictor_.surface(); }
 
+  // What is coded in place of the picture: itself, or the logarithms of its samples.
+  void frame420_of(ConstRgbView picture, Frame420& frame) {
+    if (is_ratio_) log_from_rgb(picture, codes_.view());
+    frame420_from_rgb(is_ratio_ ? ConstRgbView(codes_.view()) : picture, frame, isa_);
+  }
+
   // What the codec made of it.
   void keep(const mpeg1::FrameView& coded, bool uses_predictor) {
     if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr);
@@ -89,7 +106,10 @@ class SharedState {
 
   void composite(ConstRgbView low, RgbView shown) const {
     if (is_full_) {
-      composite_signed(low, predictor_.difference(0), predictor_.difference(1), predictor_.difference(2), shown, isa_);
+      if (is_ratio_) log_from_rgb(low, shown);
+      composite_signed(is_ratio_ ? ConstRgbView(shown) : low, predictor_.difference(0), predictor_.difference(1),
+                       predictor_.difference(2), shown, isa_);
+      if (is_ratio_) rgb_from_log(low, shown, shown);
       return;
     }
     rgb_from_frame420(coded_, shown, isa_);
@@ -112,8 +132,9 @@ class SharedState {
   }
 
   Isa isa_;
-  bool is_full_ = true;
+  bool is_full_ = true, is_ratio_ = false;
   Frame420 base_, coded_;
+  RgbImage codes_;
   ModelPredictor predictor_;
 };
 
@@ -139,8 +160,8 @@ double key_quantizer_for(const AssistedVideoOptions& options) {
   return std::max(1.0, options.quantizer_scale / kKeyRatio);
 }
 
-// Why a picture is coded again. It is packed: what its levels cost there, the first coding tells. A bit rate counts what
-// is sent: each picture that the encoder offers is packed for its size.
+// Why a picture is coded again. It is packed: what its levels cost there, the first coding tells. A bit rate counts
+// what is sent: each picture that the encoder offers is packed for its size.
 struct PackedSearch {
   std::optional<QuantizerSearch> search;  // of a bit rate
   PicturePacker* packer;                  // null: pictures are sent as they are
@@ -194,7 +215,7 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
   if (const char* problem = problem_with(options.rate, scene.width, scene.height))
     return Failure{Error::bad_argument, 0, problem};
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
-  return AssistedEncoder(std::make_unique<State>(State{options,
+  return AssistedEncoder(std::make_unique<State>(State{settled(options, scene),
                                                        isa,
                                                        SharedState(scene, isa),
                                                        std::move(encoder),
@@ -233,15 +254,15 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   State& s = *state_;
   const AssistedVideoOptions& options = s.options;
   const bool is_key = next_is_key(force_key);
+  mpeg1::PictureOptions picture;
+  picture.reference = s.shared.reference(options.prediction, options.difference, options.residual, is_key, frame.low,
+                                         frame.depth, frame.id, frame.camera, frame.objects);
   if (options.difference == Difference::full) {
-    frame420_from_rgb(frame.high, s.source, s.isa);
+    s.shared.frame420_of(frame.high, s.source);
   } else {
     difference_image(frame.high, frame.low, s.difference.view(), s.isa);
     frame420_from_rgb(s.difference.view(), s.source, s.isa);
   }
-  mpeg1::PictureOptions picture;
-  picture.reference = s.shared.reference(options.prediction, options.difference, is_key, frame.low, frame.depth,
-                                         frame.id, frame.camera, frame.objects);
   const bool replaced = picture.reference != nullptr;
   picture.type = replaced || !is_key ? mpeg1::PictureType::P : mpeg1::PictureType::I;
   AssistedVideoOptions wanted = options;
@@ -250,8 +271,8 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   const bool packs = replaced && options.is_packed;
   const size_t before = out.size(), begin = before + 1;  // a byte before the picture
   const bool is_priced = packs && options.effort != mpeg1::Effort::fast;
-  PackedSearch search{std::nullopt, packs ? &s.packer : nullptr, is_key,  s.shared.surface(), out,
-                      begin,        picture, is_priced ? &s.prices : nullptr};
+  PackedSearch search{std::nullopt, packs ? &s.packer : nullptr,    is_key, s.shared.surface(), out, begin,
+                      picture,      is_priced ? &s.prices : nullptr};
   if (options.rate.is_on()) {
     search.search.emplace(s.bucket.next(), frame.overhead_bytes + 1);
     picture.quantizer_scale = s.first_guess(is_key);
@@ -272,7 +293,8 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   }
 
   out.push_back(static_cast<uint8_t>((is_key ? kKey : 0) | static_cast<int>(options.prediction) << kPredictionShift |
-                                     (options.difference == Difference::full ? kFull : 0)));
+                                     (options.difference == Difference::full ? kFull : 0) |
+                                     (options.residual == Residual::ratio ? kRatio : 0)));
   PAC_TRY(const mpeg1::PictureReport coded, s.encoder.add(s.source, out, picture));
   s.picture.assign(out.begin() + static_cast<ptrdiff_t>(begin), out.end());
   if (packs) {
@@ -371,14 +393,18 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   State& s = *state_;
   if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
   const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
-  if ((bytes[0] & ~(kKey | kPredictionMask | kFull | kPacked)) != 0 || prediction > static_cast<int>(Prediction::model))
+  if ((bytes[0] & ~(kKey | kPredictionMask | kFull | kPacked | kRatio)) != 0 ||
+      prediction > static_cast<int>(Prediction::model))
     return Failure{Error::unsupported, 0, "unknown kind of video frame"};
   const auto kind = static_cast<Prediction>(prediction);
   const bool is_full = (bytes[0] & kFull) != 0;
   if (is_full && kind == Prediction::block) return Failure{Error::corrupt, 0, "block prediction of full differences"};
+  const bool is_ratio = (bytes[0] & kRatio) != 0;
+  if (is_ratio && !is_full) return Failure{Error::corrupt, 0, "ratios of halved differences"};
   s.was_key = (bytes[0] & kKey) != 0;
-  s.reference = s.shared.reference(kind, is_full ? Difference::full : Difference::halved, s.was_key, low, depth, id,
-                                   camera, objects);
+  s.reference =
+      s.shared.reference(kind, is_full ? Difference::full : Difference::halved,
+                         is_ratio ? Residual::ratio : Residual::additive, s.was_key, low, depth, id, camera, objects);
   std::span<const uint8_t> picture_bytes = bytes.subspan(1);
   if ((bytes[0] & kPacked) != 0) {
     if (s.reference == nullptr) return Failure{Error::corrupt, 0, "packed picture without the model's prediction"};

@@ -30,14 +30,18 @@ namespace pac::sim {
 
 enum class Prediction : uint8_t { none, block, model };
 enum class Difference : uint8_t { halved, full };
+// Of full differences: of samples, or of their logarithms (sim/log_domain.h), where what light does to a texture is the
+// same difference whatever the texel. by_scene: ratio where H and L differ in light alone.
+enum class Residual : uint8_t { by_scene, additive, ratio };
 
 struct AssistedVideoOptions {
   Prediction prediction = Prediction::model;
   Difference difference = Difference::full;
-  double quantizer_scale = 16;     // 1..31, real-valued, of P pictures
-  double key_quantizer_scale = 0;  // of pictures that stand alone; 0: key_quantizer_for(options)
-  int key_interval = 132;          // 1..132: pictures from one that stands alone to the next; 0: the first only
-  int picture_rate_code = 3;       // for the headers only
+  Residual residual = Residual::by_scene;  // of halved differences: additive
+  double quantizer_scale = 16;             // 1..31, real-valued, of P pictures
+  double key_quantizer_scale = 0;          // of pictures that stand alone; 0: key_quantizer_for(options)
+  int key_interval = 132;                  // 1..132: pictures from one that stands alone to the next; 0: the first only
+  int picture_rate_code = 3;               // for the headers only
   mpeg1::Effort effort = mpeg1::Effort::normal;
   bool is_packed = true;  // where the reference picture is replaced
   BitRate rate;  // on: every picture's quantizer is chosen for it, and the quantizers above are where the search begins
@@ -63,6 +67,7 @@ struct AssistedScene {
   int width = 0, height = 0;           // 1..mpeg1::kMaxWidth, kMaxHeight
   const raster::Scene* low = nullptr;  // what L draws, read in create() only
   int samples = 1;                     // of L, a pixel
+  bool differs_in_light = false;       // Split::differs_in_light(); means nothing to a decoder
 };
 
 struct AssistedReport {

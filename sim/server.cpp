@@ -56,7 +56,8 @@ Result<Server> Server::create(SceneSet scene, Split split, const ServerOptions& 
   if (options.codec != Codec::jpeg) {
     if (options.transmit_model)
       return Failure{Error::bad_argument, 0, "video is coded against a model that is resident"};
-    const AssistedScene seen{options.width, options.height, &renderer.low_scene(), split.low.samples};
+    const AssistedScene seen{options.width, options.height, &renderer.low_scene(), split.low.samples,
+                             split.differs_in_light()};
     if (options.codec == Codec::mpeg1) {
       PAC_TRY(video, AssistedEncoder::create(seen, options.video, options.isa));
     } else {

@@ -26,6 +26,11 @@ struct Split {
   bool single_pass() const {
     return low_model == Model::fine && low_lighting == Lighting::full && high.samples == low.samples;
   }
+
+  // L has H's textures under less light.
+  bool differs_in_light() const {
+    return high.texture == low.texture && (low_lighting != Lighting::full || high.lighting != low.lighting);
+  }
 };
 
 struct SplitOptions {

@@ -202,7 +202,8 @@ class DrawnScene {
     video.picture_rate_code = rate_code;
     video.effort = plan_->effort;
     const RgbImage& high = shots_[0].images.high;
-    const AssistedScene scene = {high.width(), high.height(), &renderer_.low_scene(), split_.low.samples};
+    const AssistedScene scene = {high.width(), high.height(), &renderer_.low_scene(), split_.low.samples,
+                                 split_.differs_in_light()};
     return frames_from(code_assisted_video(shots_, scene, video, isa_, true));
   }
 

@@ -129,7 +129,8 @@ PeerCode ExperimentCodecs::code_assisted(const std::string& key, const std::vect
   options.difference = key == "polygons-block" ? sim::Difference::halved : sim::Difference::full;
   options.quantizer_scale = setting;
   options.effort = mpeg1::Effort::best;
-  const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples};
+  const sim::AssistedScene scene{sequence_.width, sequence_.height, &sequence_.low, sequence_.samples,
+                                 sequence_.differs_in_light};
   PeerCode out;
   const double begin = cpu_ms();
   const auto frames = need(sim::code_assisted_video(shots, scene, options, best_isa(), true), key.c_str());

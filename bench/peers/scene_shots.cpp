@@ -128,6 +128,7 @@ Sequence draw(NamedScene& scene, const std::string& split_name, int frames, int 
     out.height = std::max(1, out.height * longer_side / longer);
   }
   out.samples = split.low.samples;
+  out.differs_in_light = split.differs_in_light();
   if (scene.moves) {
     const sim::Transforms start = scene.builtin->part_motion(0, scene.set.parts);
     if (!sim::move_objects(start, scene.set.fine).ok()) std::exit(1);

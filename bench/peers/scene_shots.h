@@ -38,6 +38,7 @@ NamedScene load_scene(const std::string& name);
 // H, L, D, depth and ids of every frame.
 struct Sequence {
   int width = 0, height = 0, samples = 1;  // samples: of L
+  bool differs_in_light = false;           // sim::Split::differs_in_light()
   raster::Scene low;                       // objects where the first shot has them
   std::vector<sim::Shot> shots;
   uint64_t resident_model_bytes = 0;

@@ -73,7 +73,8 @@ Arm our_arm(const Sequence& sequence, sim::Prediction prediction, sim::Differenc
     options.difference = difference;
     options.quantizer_scale = quantizer;
     options.effort = mpeg1::Effort::best;
-    const sim::AssistedScene scene{sequence.width, sequence.height, &sequence.low, sequence.samples};
+    const sim::AssistedScene scene{sequence.width, sequence.height, &sequence.low, sequence.samples,
+                                   sequence.differs_in_light};
     auto frames = need(sim::code_assisted_video(sequence.shots, scene, options, best_isa(), true), name);
     std::vector<RgbImage> shown;
     for (sim::VideoFrame& frame : frames) shown.push_back(std::move(frame.shown));

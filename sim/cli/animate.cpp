@@ -32,6 +32,10 @@ void declare_video(Options& options, Request& request) {
   options.choice<Difference>("--difference", video.difference,
                              {{"halved", Difference::halved}, {"full", Difference::full}},
                              "mpeg1: 127+(H-L)/2 as the paper, or H predicted from L (full; block: halved)");
+  options.choice<sim::Residual>(
+      "--residual", video.residual,
+      {{"auto", sim::Residual::by_scene}, {"additive", sim::Residual::additive}, {"ratio", sim::Residual::ratio}},
+      "mpeg1, difference full: of samples or of their logarithms (auto: ratio where the split is lighting)");
   options.real("--quantizer-scale", "Q", request.animation.quantizer_scale, 1, 31,
                "mpeg1: of the image-based arm; the other is matched to its bytes (8)");
   options.integer(
@@ -213,6 +217,8 @@ int run_animate(Args args) {
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   sim::AnimationOptions& animation = request.animation;
+  if (animation.video.residual == sim::Residual::ratio && animation.video.difference != sim::Difference::full)
+    return options.usage_error("--residual ratio needs --difference full");
   if (options.given("--bit-rate") && options.given("--quantizer-scale"))
     return options.usage_error("--bit-rate chooses the quantizer itself: leave --quantizer-scale out");
   if (options.given("--buffer") && !options.given("--bit-rate"))
