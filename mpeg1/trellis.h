@@ -40,8 +40,9 @@ int64_t energy(const BlockToQuantize& block);
 // lambda * bits over all choices of each level, the next smaller one or zero. Dynamic programming over positions.
 BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
 
-// The same where block.prices says what each costs: nothing hangs on the run before, so that one pass over the positions
-// finds the least. The block may be left out of the pattern; what the pattern costs is not counted in the bits.
+// The same where block.prices says what each costs: nothing hangs on the run before, so that one pass over the
+// positions finds the least. The block may be left out of the pattern; what the pattern costs is not counted in the
+// bits.
 BlockCost quantize_priced(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero);
 
 // One pass: levels of 1 that cost more than they save become zero, and those after the best place to end the block.
