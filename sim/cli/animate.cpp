@@ -217,8 +217,6 @@ int run_animate(Args args) {
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   sim::AnimationOptions& animation = request.animation;
-  if (animation.video.residual == sim::Residual::ratio && animation.video.difference != sim::Difference::full)
-    return options.usage_error("--residual ratio needs --difference full");
   if (options.given("--bit-rate") && options.given("--quantizer-scale"))
     return options.usage_error("--bit-rate chooses the quantizer itself: leave --quantizer-scale out");
   if (options.given("--buffer") && !options.given("--bit-rate"))
@@ -234,6 +232,8 @@ int run_animate(Args args) {
   if (options.given("--bit-rate") && !options.given("--gop")) animation.video.key_interval = 0;
   if (animation.video.prediction == sim::Prediction::block && !options.given("--difference"))
     animation.video.difference = sim::Difference::halved;
+  if (animation.video.residual == sim::Residual::ratio && animation.video.difference != sim::Difference::full)
+    return options.usage_error("--residual ratio needs --difference full");
   if (request.moving && !source->can_move())
     return options.usage_error("--objects moving: nothing in this scene can move");
   if (!options.given("--objects")) request.moving = source->builtin == nullptr && source->can_move();
