@@ -56,6 +56,7 @@ void for_each_tile(const RasterTriangle& t, int tiles_x, const SampleHull& hull,
   constexpr int kShift = 5;
   static_assert(1 << kShift == kTileSize);
   const int x0 = t.min_x >> kShift, x1 = t.max_x >> kShift, y0 = t.min_y >> kShift, y1 = t.max_y >> kShift;
+  if (x0 == x1 && y0 == y1) return visit(y0 * tiles_x + x0);
   const bool test = x1 - x0 + y1 - y0 > 1;
   for (int y = y0; y <= y1; ++y)
     for (int x = x0; x <= x1; ++x)
@@ -154,7 +155,8 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
   const uint32_t *const indices = mesh.indices.data(), *const outcodes = outcodes_.data();
   const ScreenVertex* const screen = screen_.data();
   const std::vector<Surface>& surfaces = *input.surfaces[0];
-  uint32_t material = UINT32_MAX, drop_back = 0;
+  uint32_t material = UINT32_MAX, drop_back = 0, dropped = chunk.drop_back;
+  int n = chunk.n_pending;
   for (; face < last_face; ++face) {
     const Face& at = faces[face];
     if (at.count != 3 || at.material >= n_materials || at.first > last_first) break;
@@ -166,14 +168,20 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
     if ((any & kOutClip) != 0) break;
     if (at.material != material) drop_back = surfaces[at.material].drop_back_faces ? 1 : 0;
     material = at.material;
-    const int lane = chunk.n_pending++;
-    chunk.pending[lane] = {static_cast<uint32_t>(face), {v0, v1, v2}};
-    chunk.corners[lane][0] = screen + v0;
-    chunk.corners[lane][1] = screen + v1;
-    chunk.corners[lane][2] = screen + v2;
-    chunk.drop_back |= drop_back << lane;
-    if (lane + 1 == kSetupLanes) flush(input, chunk);
+    chunk.pending[n] = {static_cast<uint32_t>(face), {v0, v1, v2}};
+    chunk.corners[n][0] = screen + v0;
+    chunk.corners[n][1] = screen + v1;
+    chunk.corners[n][2] = screen + v2;
+    dropped |= drop_back << n;
+    if (++n < kSetupLanes) continue;
+    chunk.n_pending = n;
+    chunk.drop_back = dropped;
+    flush(input, chunk);
+    n = 0;
+    dropped = 0;
   }
+  chunk.n_pending = n;
+  chunk.drop_back = dropped;
   chunk.stats.triangles_submitted += face - given;
   return face;
 }
