@@ -21,6 +21,13 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   const SamplePosition corner{area.x * 256, area.y * 256};
   for (size_t i = 0; i < triangles_.size(); ++i)
     input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
+  if (first_sample == 0 && takes_first_sample_from_grid(input)) {
+    input.kernels->tile.first_sample(grid_, triangles_.data(), corner, depth_, ids_);
+    for (int y = 0; y < area.height; ++y) {
+      if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth.pixel(area.x, area.y + y));
+      if (!input.id.empty()) std::copy_n(ids_ + y * kTileSize, area.width, input.id.pixel(area.x, area.y + y));
+    }
+  }
   // The one whose shading leaves the packs as they are goes first.
   const int first = input.has_final_colors[1] ? 1 : 0;
   const int renderings[2] = {first, 1 - first};
@@ -29,6 +36,12 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
     return shade_grid(input, area, renderings, first_sample);
   for (const int& rendering : renderings)
     if (wanted[rendering]) shade_grid(input, area, {&rendering, 1}, first_sample);
+}
+
+// Depth and ids come with the colors: previous positions alone need a rasterization of their own.
+bool TilePainter::takes_first_sample_from_grid(const PaintInput& input) const {
+  return input.pattern.size() > 1 && input.previous.empty() && (wants_color(input, 0) || wants_color(input, 1)) &&
+         !has_masked_ && !has_blended_;
 }
 
 // Every sample by itself; all at the pixel's center; or those of each quarter of the pixel at its center.

@@ -66,6 +66,7 @@ SamplePosition TilePainter::position(const Area& area, SampleOffset offset) {
 // Depth, ids and previous positions; what it rasterizes stays in depth_ and, where it is wanted, ids_.
 void TilePainter::write_first_sample(const PaintInput& input, const Area& area) {
   if (input.pattern.size() > 1 && input.depth.empty() && input.id.empty() && input.previous.empty()) return;
+  if (takes_first_sample_from_grid(input)) return;
   const SamplePosition origin = position(area, input.pattern[0]);
   rasterize(input, origin);
   write_depth_and_id(input, area);

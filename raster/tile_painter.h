@@ -81,6 +81,7 @@ class TilePainter {
   static int few_lanes(const Surface& surface);
   void blend(const PaintInput& input, const ShadePass& pass);
   void add_sample(const PaintInput& input, int rendering);
+  bool takes_first_sample_from_grid(const PaintInput& input) const;
   void write_depth_and_id(const PaintInput& input, const Area& area) const;
   void write_previous(const PaintInput& input, const Area& area, SamplePosition origin);
   void write_color(const PaintInput& input, const Area& area);

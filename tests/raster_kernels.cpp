@@ -93,6 +93,9 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
       for (const RasterTriangle& t : triangles) list.push_back(&t);
       for (uint32_t i = 0; i < list.size(); ++i)
         table->tile.rasterize_grid(*list[i], i + 1, list.data(), {corner, corner}, tile.grid);
+      for (size_t i = 0; i < triangles.size(); ++i) triangles[i].id = static_cast<uint32_t>(1000 + i);
+      Tile first;
+      table->tile.first_sample(tile.grid, list.data(), {corner, corner}, first.depth, first.ids);
       for (int s = 0; s < tile.grid.n; ++s) {
         Tile expected;
         std::fill(std::begin(expected.depth), std::end(expected.depth), 1.0f);
@@ -102,6 +105,10 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
               ->tile.rasterize(*list[i], i + 1, {corner + tile.grid.x[s], corner + tile.grid.y[s]}, expected.depth,
                                expected.ids);
         for (int pixel = 0; pixel < kTilePixels; ++pixel) REQUIRE(tile.id_at(pixel, s) == expected.ids[pixel]);
+        for (int pixel = 0; s == 0 && pixel < kTilePixels; ++pixel) {
+          REQUIRE(first.depth[pixel] == expected.depth[pixel]);
+          REQUIRE(first.ids[pixel] == (expected.ids[pixel] == 0 ? 0 : 999 + expected.ids[pixel]));
+        }
       }
       for (const uint32_t id : tile.whole) (id == kSplitPixel ? n_split : n_whole) += id != 0 ? 1 : 0;
     }

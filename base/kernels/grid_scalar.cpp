@@ -48,6 +48,21 @@ void rasterize_grid(const RasterTriangle& t, uint32_t id, const RasterTriangle* 
       }
 }
 
+void first_sample(const SampleGrid& grid, const RasterTriangle* const* triangles, SamplePosition origin, float* depth,
+                  uint32_t* ids) {
+  for (int at = 0; at < kTileSize * kTileSize; ++at) {
+    const bool is_split = grid.whole[at] == kSplitPixel;
+    const uint32_t id = is_split ? grid.ids[at * kGridSamples] : grid.whole[at];
+    depth[at] = 1.0f;
+    ids[at] = 0;
+    if (id == 0) continue;
+    const RasterTriangle& t = *triangles[id - 1];
+    const int px = at % kTileSize, py = at / kTileSize;
+    depth[at] = depth_at(t, origin.x + 256 * px + grid.x[0] - t.x0, origin.y + 256 * py + grid.y[0] - t.y0);
+    ids[at] = t.id;
+  }
+}
+
 // The packs of one group of eight pixels, in the order in which their triangles come by.
 struct GroupPacks {
   LanePack* packs;
@@ -95,6 +110,7 @@ int collect_grid(const SampleGrid& grid, uint32_t samples, int first_row, int la
 
 void fill_grid_scalar(TileKernels& table) {
   table.rasterize_grid = rasterize_grid;
+  table.first_sample = first_sample;
   table.collect_grid = collect_grid;
 }
 

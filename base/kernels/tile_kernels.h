@@ -190,6 +190,11 @@ struct TileKernels {
   void (*rasterize_grid)(const RasterTriangle& triangle, uint32_t id, const RasterTriangle* const* triangles,
                          SamplePosition origin, const SampleGrid& grid);
 
+  // Depth and RasterTriangle::id of the tile's pixels at sample 0 of the grid, as rasterize() finds them there; 1 and 0
+  // where nothing is. depth, ids: kTileSize * kTileSize.
+  void (*first_sample)(const SampleGrid& grid, const RasterTriangle* const* triangles, SamplePosition origin,
+                       float* depth, uint32_t* ids);
+
   // As collect_packs() for rows [first_row, last_row) of the tile: one pack for each triangle that the samples in the
   // set `samples` (bit s = sample s) see in each group of eight pixels, with the number of such samples as weights.
   // Room for 4 * kGridSamples * 8 packs a row.

@@ -144,6 +144,10 @@ inline __m256i in_range(__m256i position_64, __m256i end_64) {
   return _mm256_and_si256(_mm256_cmpgt_epi32(near, _mm256_set1_epi32(-1)), _mm256_cmpgt_epi32(end_64, near));
 }
 
+inline __m256i ramp() {
+  return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+}
+
 // Returns how many of the eight are plain.
 inline int place(const Lookup& before, const int32_t* x_64, const int32_t* y_64, const float* u, const uint32_t* now,
                  uint8_t* state, uint32_t* wanted_keys) {
@@ -160,7 +164,13 @@ inline int place(const Lookup& before, const int32_t* x_64, const int32_t* y_64,
   }
   const __m256i column = _mm256_srai_epi32(x, 6), line = _mm256_srai_epi32(y, 6);
   const __m256i index = _mm256_add_epi32(_mm256_mullo_epi32(line, before.map_stride), column);
-  const __m256i key = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), before.keys, index, inside, 4);
+  const int32_t start = _mm_cvtsi128_si32(_mm256_castsi256_si128(index));
+  const __m256i in_order =
+      _mm256_and_si256(inside, _mm256_cmpeq_epi32(index, _mm256_add_epi32(_mm256_set1_epi32(start), ramp())));
+  // A gather takes long, and most often the eight lie side by side.
+  const __m256i key = _mm256_movemask_epi8(in_order) == -1
+                          ? _mm256_loadu_si256(reinterpret_cast<const __m256i*>(before.keys + start))
+                          : _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), before.keys, index, inside, 4);
   const __m256i smooth = _mm256_srai_epi32(_mm256_slli_epi32(key, 17), 31);
   const __m256i plain = _mm256_and_si256(smooth, belongs(key, wanted));
   const __m256i states = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(plain, inside));
