@@ -1,28 +1,21 @@
-#include "sim/assisted_video.h"
-
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "mpeg1/headers.h"
 #include "raster/sample_pattern.h"
+#include "sim/assisted_state.h"
+#include "sim/assisted_video.h"
 #include "sim/difference.h"
 #include "sim/difference_matrices.h"
 #include "sim/frame420.h"
-#include "sim/log_domain.h"
-#include "sim/model_prediction.h"
 #include "sim/model_vectors.h"
 #include "sim/object_motion.h"
 #include "sim/picture_packing.h"
-#include "sim/signed_composite.h"
 
 namespace pac::sim {
 
 namespace {
-
-// The first byte of each frame: what the decoder must know before the picture.
-constexpr uint8_t kKey = 1, kPredictionShift = 1, kPredictionMask = 6, kFull = 8, kPacked = 16, kRatio = 32;
 
 mpeg1::SequenceOptions sequence_options(const AssistedScene& scene, const AssistedVideoOptions& options) {
   mpeg1::SequenceOptions sequence;
@@ -63,101 +56,10 @@ const char* problem_with(const AssistedVideoOptions& options) {
   return nullptr;
 }
 
-// What server and client do alike.
-class SharedState {
- public:
-  SharedState(const AssistedScene& scene, Isa isa)
-      : isa_(isa),
-        base_(scene.width, scene.height),
-        coded_(scene.width, scene.height),
-        codes_(scene.width, scene.height),
-        predictor_(scene.width, scene.height, surfaces_of(*scene.low), first_sample(scene.samples).x / 256.0,
-                   first_sample(scene.samples).y / 256.0, isa, movers_of(*scene.low)) {}
-
-  // The picture that predicts this frame, or null where the codec's own does.
-  const Frame420* reference(Prediction prediction, Difference difference, Residual residual, bool is_key,
-                            ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id,
-                            const raster::Camera& camera, std::span<const glm::mat4> objects) {
-    is_full_ = difference == Difference::full;
-    is_ratio_ = residual == Residual::ratio;
-    if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return nullptr;
-    if (is_full_)
-      frame420_of(low, base_);
-    else
-      fill_gray();
-    if (is_key || prediction == Prediction::none) predictor_.forget();
-    return &predictor_.reference(base_, depth, id, camera, objects);
-  }
-
-  // Of the frame whose reference was asked for last; empty where it was the codec's own.
-  PlaneView<const uint32_t> surface() const { return predictor_.surface(); }
-
-  // What is coded in place of the picture: itself, or the logarithms of its samples.
-  void frame420_of(ConstRgbView picture, Frame420& frame) {
-    if (is_ratio_) log_from_rgb(picture, codes_.view());
-    frame420_from_rgb(is_ratio_ ? ConstRgbView(codes_.view()) : picture, frame, isa_);
-  }
-
-  // What the codec made of it.
-  void keep(const mpeg1::FrameView& coded, bool uses_predictor) {
-    if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr);
-    if (!is_full_) coded_ = mpeg1::copy_of(coded);
-  }
-
-  void composite(ConstRgbView low, RgbView shown) const {
-    if (is_full_) {
-      if (is_ratio_) log_from_rgb(low, shown);
-      composite_signed(is_ratio_ ? ConstRgbView(shown) : low, predictor_.difference(0), predictor_.difference(1),
-                       predictor_.difference(2), shown, isa_);
-      if (is_ratio_) rgb_from_log(low, shown, shown);
-      return;
-    }
-    rgb_from_frame420(coded_, shown, isa_);
-    composite_image(low, shown, shown, isa_);
-  }
-
-  double carried_share() const { return predictor_.stats().carried_share; }
-
- private:
-  static raster::SampleOffset first_sample(int samples) { return raster::sample_pattern(samples)[0]; }
-
-  // D = 127 everywhere: no difference [Levoy95 s.3].
-  void fill_gray() {
-    const auto fill = [](GrayImage& plane, uint8_t value) {
-      for (int y = 0; y < plane.height(); ++y) std::fill_n(plane.row(y), plane.width(), value);
-    };
-    fill(base_.y, 127);
-    fill(base_.cb, 128);
-    fill(base_.cr, 128);
-  }
-
-  Isa isa_;
-  bool is_full_ = true, is_ratio_ = false;
-  Frame420 base_, coded_;
-  RgbImage codes_;
-  ModelPredictor predictor_;
-};
-
 std::optional<ModelFlow> block_flow_for(const AssistedScene& scene, const AssistedVideoOptions& options, Isa isa) {
   if (options.prediction != Prediction::block) return std::nullopt;
   const raster::SampleOffset sample = raster::sample_pattern(scene.samples)[0];
   return ModelFlow(scene.width, scene.height, sample.x / 256.0, sample.y / 256.0, movers_of(*scene.low), isa);
-}
-
-Result<void> check(const AssistedScene& scene) {
-  if (scene.width < 1 || scene.width > mpeg1::kMaxWidth || scene.height < 1 || scene.height > mpeg1::kMaxHeight)
-    return Failure{Error::bad_argument, 0, "pictures of MPEG-1 are at most 4095 x 2800 pixels"};
-  if (raster::sample_pattern(scene.samples).empty())
-    return Failure{Error::bad_argument, 0, "samples a pixel must be 1, 4, 16 or 64"};
-  return {};
-}
-
-}  // namespace
-
-double key_quantizer_for(const AssistedVideoOptions& options) {
-  if (options.key_quantizer_scale != 0) return options.key_quantizer_scale;
-  if (options.prediction != Prediction::model) return options.quantizer_scale;
-  return std::max(1.0, options.quantizer_scale / kKeyRatio);
 }
 
 // Why a picture is coded again. It is packed: what its levels cost there, the first coding tells. A bit rate counts
@@ -186,10 +88,18 @@ struct PackedSearch {
   }
 };
 
+}  // namespace
+
+double key_quantizer_for(const AssistedVideoOptions& options) {
+  if (options.key_quantizer_scale != 0) return options.key_quantizer_scale;
+  if (options.prediction != Prediction::model) return options.quantizer_scale;
+  return std::max(1.0, options.quantizer_scale / kKeyRatio);
+}
+
 struct AssistedEncoder::State {
   AssistedVideoOptions options;
   Isa isa;
-  SharedState shared;
+  AssistedState shared;
   mpeg1::Encoder encoder;
   int64_t since_key = -1;  // -1: nothing coded yet
   Frame420 source;
@@ -217,7 +127,7 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
   return AssistedEncoder(std::make_unique<State>(State{settled(options, scene),
                                                        isa,
-                                                       SharedState(scene, isa),
+                                                       AssistedState(scene, isa),
                                                        std::move(encoder),
                                                        -1,
                                                        Frame420(scene.width, scene.height),
@@ -322,113 +232,6 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
 
 void AssistedEncoder::composite(ConstRgbView low, RgbView shown) const {
   state_->shared.composite(low, shown);
-}
-
-struct AssistedDecoder::State {
-  State(const AssistedScene& scene, const Limits& wanted_limits, Isa wanted_isa)
-      : width(scene.width),
-        height(scene.height),
-        limits(wanted_limits),
-        isa(wanted_isa),
-        shared(scene, isa),
-        decoder(options(), isa),
-        packer(scene.width, scene.height) {}
-
-  mpeg1::DecoderOptions options() {
-    mpeg1::DecoderOptions result;
-    result.limits = limits;
-    result.strict = true;
-    result.low_delay = true;
-    result.reference = [](void* context, const mpeg1::PictureHeader&, const mpeg1::FrameView&) {
-      const State& state = *static_cast<const State*>(context);
-      const mpeg1::SequenceHeader* header = state.decoder.sequence();
-      const bool fits = header != nullptr && header->width == state.width && header->height == state.height;
-      return fits ? state.reference : nullptr;
-    };
-    result.reference_context = this;
-    return result;
-  }
-
-  // A decoder that has failed fails for ever: another one goes on, which knows the sequence by its last good header.
-  // What it may not have is the picture before: block prediction waits for a picture that stands alone.
-  Failure start_again(const Failure& failure) {
-    decoder = mpeg1::Decoder(options(), isa);
-    if (sequence) {
-      Bytes header;
-      mpeg1::write_sequence_header(*sequence, header);
-      decoder.feed(header);
-    }
-    return failure;
-  }
-
-  int width, height;
-  Limits limits;
-  Isa isa;
-  SharedState shared;
-  mpeg1::Decoder decoder;
-  std::optional<mpeg1::SequenceHeader> sequence;  // of the last picture that was good
-  PicturePacker packer;
-  Bytes unpacked;
-  const Frame420* reference = nullptr;
-  bool was_key = false;
-};
-
-Result<AssistedDecoder> AssistedDecoder::create(const AssistedScene& scene, const Limits& limits, Isa isa) {
-  PAC_CHECK(check(scene));
-  return AssistedDecoder(std::make_unique<State>(scene, limits, isa));
-}
-
-AssistedDecoder::AssistedDecoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
-AssistedDecoder::~AssistedDecoder() = default;
-AssistedDecoder::AssistedDecoder(AssistedDecoder&&) noexcept = default;
-AssistedDecoder& AssistedDecoder::operator=(AssistedDecoder&&) noexcept = default;
-
-bool AssistedDecoder::last_was_key() const {
-  return state_->was_key;
-}
-
-Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
-                                     PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown,
-                                     std::span<const glm::mat4> objects) {
-  State& s = *state_;
-  if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
-  const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
-  if ((bytes[0] & ~(kKey | kPredictionMask | kFull | kPacked | kRatio)) != 0 ||
-      prediction > static_cast<int>(Prediction::model))
-    return Failure{Error::unsupported, 0, "unknown kind of video frame"};
-  const auto kind = static_cast<Prediction>(prediction);
-  const bool is_full = (bytes[0] & kFull) != 0;
-  if (is_full && kind == Prediction::block) return Failure{Error::corrupt, 0, "block prediction of full differences"};
-  const bool is_ratio = (bytes[0] & kRatio) != 0;
-  if (is_ratio && !is_full) return Failure{Error::corrupt, 0, "ratios of halved differences"};
-  s.was_key = (bytes[0] & kKey) != 0;
-  s.reference =
-      s.shared.reference(kind, is_full ? Difference::full : Difference::halved,
-                         is_ratio ? Residual::ratio : Residual::additive, s.was_key, low, depth, id, camera, objects);
-  std::span<const uint8_t> picture_bytes = bytes.subspan(1);
-  if ((bytes[0] & kPacked) != 0) {
-    if (s.reference == nullptr) return Failure{Error::corrupt, 0, "packed picture without the model's prediction"};
-    s.unpacked.clear();
-    PAC_CHECK(s.packer.unpack(picture_bytes, s.was_key, s.shared.surface(), s.unpacked));
-    picture_bytes = s.unpacked;
-  } else if (s.was_key) {
-    s.packer.forget();
-  }
-  s.decoder.feed(picture_bytes);
-  s.decoder.end_picture();
-  const auto decoded = s.decoder.next();
-  if (!decoded.ok()) return s.start_again(decoded.failure());
-  const mpeg1::DecodedPicture* picture = *decoded;
-  if (picture == nullptr) return s.start_again({Error::truncated, bytes.size(), "no picture in the video frame"});
-  if (picture->view.width() != s.width || picture->view.height() != s.height)
-    return s.start_again({Error::corrupt, 1, "pictures have another size than the session"});
-  s.shared.keep(picture->view, s.reference != nullptr);
-  s.shared.composite(low, shown);
-  s.sequence = *s.decoder.sequence();
-  const auto more = s.decoder.next();  // it would come out in place of the next frame's
-  if (!more.ok()) return s.start_again(more.failure());
-  if (*more != nullptr) return s.start_again({Error::corrupt, 1, "more than one picture in the video frame"});
-  return {};
 }
 
 }  // namespace pac::sim
