@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -29,6 +30,27 @@ std::string filled(const char* pattern, double setting, bool is_whole) {
   else
     std::snprintf(text, sizeof text, pattern, setting);
   return text;
+}
+
+int even(int size) {
+  return size + size % 2;
+}
+
+// Video codecs of 4:2:0 want even sizes: the last column and row twice where there is an odd one.
+RgbImage padded(ConstRgbView picture) {
+  RgbImage out(even(picture.width), even(picture.height));
+  for (int y = 0; y < out.height(); ++y) {
+    const uint8_t* from = picture.row(std::min(y, picture.height - 1));
+    std::memcpy(out.row(y), from, 3 * static_cast<size_t>(picture.width));
+    if (out.width() > picture.width) std::memcpy(out.pixel(picture.width, y), from + 3 * (picture.width - 1), 3);
+  }
+  return out;
+}
+
+RgbImage cropped(const RgbImage& picture, int width, int height) {
+  RgbImage out(width, height);
+  for (int y = 0; y < height; ++y) std::memcpy(out.row(y), picture.row(y), 3 * static_cast<size_t>(width));
+  return out;
 }
 
 }  // namespace
@@ -112,10 +134,10 @@ PeerRunner::PeerRunner(std::vector<ConstRgbView> pictures, int frames_per_second
   width_ = pictures[0].width;
   height_ = pictures[0].height;
   Bytes y4m;
-  append_y4m_header(y4m, {width_, height_, frames_per_second, 1, 1, 1, ChromaSiting::jpeg});
-  Frame420 frame(width_, height_);
+  append_y4m_header(y4m, {even(width_), even(height_), frames_per_second, 1, 1, 1, ChromaSiting::jpeg});
+  Frame420 frame(even(width_), even(height_));
   for (const ConstRgbView& picture : pictures) {
-    sim::frame420_from_rgb(picture, frame);
+    sim::frame420_from_rgb(padded(picture).view(), frame);
     append_y4m_frame(y4m, frame);
   }
   bool written = write_file(folder_ + "/h.y4m", y4m).ok();
@@ -151,7 +173,7 @@ std::optional<PeerCode> PeerRunner::video(const VideoPeer& peer, int setting) {
   out.decode_ms = children_cpu_ms() - encoded;
   const auto raw = read_file(folder_ + "/shown.yuv");
   const auto file = read_file(folder_ + "/" + code);
-  Frame420 frame(width_, height_);
+  Frame420 frame(even(width_), even(height_));
   const auto plane_bytes = [](const GrayImage& plane) {
     return static_cast<size_t>(plane.width()) * static_cast<size_t>(plane.height());
   };
@@ -162,9 +184,9 @@ std::optional<PeerCode> PeerRunner::video(const VideoPeer& peer, int setting) {
     for (GrayImage* plane : {&frame.y, &frame.cb, &frame.cr})
       for (int y = 0; y < plane->height(); ++y, at += plane->width())
         std::memcpy(plane->row(y), at, static_cast<size_t>(plane->width()));
-    RgbImage picture(width_, height_);
+    RgbImage picture(even(width_), even(height_));
     sim::rgb_from_frame420(frame, picture.view());
-    out.shown.push_back(std::move(picture));
+    out.shown.push_back(cropped(picture, width_, height_));
   }
   out.bytes = code_bytes(*file, peer.format, n_pictures_);
   return out;

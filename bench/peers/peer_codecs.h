@@ -47,7 +47,7 @@ struct PeerCode {
 // A temporary folder with the pictures in it. One object, one thread at a time.
 class PeerRunner {
  public:
-  // Writes them as a 4:2:0 sequence, and the first as PNG and PPM.
+  // Writes them as a 4:2:0 sequence, an odd column or row doubled, and the first as PNG and PPM.
   PeerRunner(std::vector<ConstRgbView> pictures, int frames_per_second);
   ~PeerRunner();
   PeerRunner(const PeerRunner&) = delete;
