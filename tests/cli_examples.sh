@@ -37,6 +37,7 @@ n=0
 while IFS= read -r name; do
   example=$(pac $name --help | sed -n '/^example:$/{n;s/^  //;p}')
   [ -n "$example" ] || { echo "pac $name --help has no example"; exit 1; }
+  [ "$name" != demo ] || continue  # most of a minute: demo.sh runs the same
   echo "\$ $example"
   bash -c "$example" >output 2>&1 || { cat output; echo "failed: $example"; exit 1; }
   n=$((n + 1))
