@@ -79,7 +79,7 @@ ReportFinding saving(const AnimationSet& set, const char* claim, Verdict as_clai
     finding.ours += finding.ours.empty() ? "At equal " : "; at equal ";
     finding.ours += kScores[kind].label;
     if (!percent) {
-      finding.ours += " nothing, as the curves share no quality";
+      finding.ours += " no figure, as the curves share no quality";
       continue;
     }
     (*percent > 0 ? none : all) = false;
