@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/fixed_log2.h"
 #include "geomcodec/range_coder.h"
 
 namespace pac::sim {
@@ -49,21 +50,11 @@ inline constexpr auto kStretch = [] {
   return table;
 }();
 
-// What a bit costs, in 1/256 bit, by the probability of its value in 1/4096. Digits of the logarithm by squaring.
+// What a bit costs, in 1/256 bit, by the probability of its value in 1/4096.
 inline constexpr auto kBitCost = [] {
   std::array<uint16_t, 4096> table{};
   table[0] = 12 * 256;
-  for (uint32_t p = 1; p < 4096; ++p) {
-    uint32_t log = 0;  // of p, to base 2, in 1/512
-    while (p >> (log + 1) != 0) ++log;
-    uint64_t mantissa = uint64_t{p} << (31 - log);  // 1..2 in 2^-31
-    for (int digit = 0; digit < 9; ++digit) {
-      mantissa = mantissa * mantissa >> 31;
-      log = log << 1 | static_cast<uint32_t>(mantissa >> 32);
-      mantissa >>= mantissa >> 32;
-    }
-    table[p] = static_cast<uint16_t>((12 * 512 - log + 1) / 2);
-  }
+  for (uint32_t p = 1; p < 4096; ++p) table[p] = static_cast<uint16_t>((12 * 512 - fixed_log2(p, 9) + 1) / 2);
   return table;
 }();
 

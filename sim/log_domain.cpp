@@ -2,21 +2,14 @@
 
 #include <algorithm>
 
+#include "base/fixed_log2.h"
+
 namespace pac::sim {
 
 namespace {
 
-// log2 of 1 <= n < 2^16 in 2^-20: digits by squaring a mantissa of 32 bits.
 constexpr int64_t log2_of(uint32_t n) {
-  int64_t log = 0;
-  while (n >> (log + 1) != 0) ++log;
-  uint64_t mantissa = uint64_t{n} << (31 - log);  // 1..2 in 2^-31
-  for (int digit = 0; digit < 20; ++digit) {
-    mantissa = mantissa * mantissa >> 31;
-    log = log << 1 | static_cast<int64_t>(mantissa >> 32);
-    mantissa >>= mantissa >> 32;
-  }
-  return log;
+  return fixed_log2(n, 20);
 }
 
 constexpr int64_t kZero = log2_of(kLogOffset), kWhole = log2_of(kLogOffset + 255) - kZero;
