@@ -145,45 +145,52 @@ void add_set(const AnimationSet& set, IllustratedReport& page) {
   page.report.figures.push_back(std::move(figure));
 }
 
-Plot rate_plot(const AnimationSet& set, size_t kind) {
+// points_of(arm, name): of that arm's series.
+template <class PointsOf>
+Plot plot_of_arms(const AnimationSet& set, size_t kind, const char* id, const char* title, const char* description,
+                  PointsOf&& points_of) {
   Plot plot;
-  plot.id = "plot-" + set.key + "-" + kScores[kind].key;
-  plot.title = set.key + ": " + kScores[kind].label + " over the bit rate";
-  plot.description = std::string(kScores[kind].label) + ", mean over the frames, against kilobits a second";
-  plot.x_label = "kb/s";
+  plot.id = "plot-" + set.key + id + kScores[kind].key;
+  plot.title = set.key + ": " + kScores[kind].label + title;
+  plot.description = std::string(kScores[kind].label) + description;
   plot.y_label = kScores[kind].label;
-  for (size_t arm = 0; arm < kAnimationArmCount; ++arm) {
-    PlotSeries series{kArms[arm].name, kArms[arm].style, {}};
-    const std::vector<AnimationPoint>& points = set.curves[arm].points;
-    for (size_t i = points.size(); i-- > 0;)  // from the coarsest, the fewest bytes
-      series.points.push_back(
-          {kilobits_a_second(set, points[i].arm), mean_of(points[i].arm, kind),
-           series.name + "\n" + size_text(set, points[i].arm) + "\n" + score_text(points[i].arm, kind)});
-    plot.series.push_back(std::move(series));
-  }
+  for (size_t arm = 0; arm < kAnimationArmCount; ++arm)
+    plot.series.push_back(
+        {kArms[arm].name, kArms[arm].style, points_of(set.curves[arm], std::string(kArms[arm].name))});
+  return plot;
+}
+
+Plot rate_plot(const AnimationSet& set, size_t kind) {
+  const auto points_of = [&](const AnimationCurve& curve, const std::string& name) {
+    std::vector<PlotPoint> points;
+    for (size_t i = curve.points.size(); i-- > 0;) {  // from the coarsest, the fewest bytes
+      const VideoArm& arm = curve.points[i].arm;
+      points.push_back({kilobits_a_second(set, arm), mean_of(arm, kind),
+                        name + "\n" + size_text(set, arm) + "\n" + score_text(arm, kind)});
+    }
+    return points;
+  };
+  Plot plot = plot_of_arms(set, kind, "-", " over the bit rate", ", mean over the frames, against kilobits a second",
+                           points_of);
+  plot.x_label = "kb/s";
   return plot;
 }
 
 // Of the films shown.
 Plot frame_plot(const AnimationSet& set, size_t kind) {
-  Plot plot;
-  plot.id = "plot-" + set.key + "-frames-" + kScores[kind].key;
-  plot.title = set.key + ": " + kScores[kind].label + " frame by frame";
-  plot.description = std::string(kScores[kind].label) + " of every frame of the films above";
+  const auto points_of = [&](const AnimationCurve& curve, const std::string& name) {
+    std::vector<PlotPoint> points;
+    for (const ArmFrame& frame : curve.points[kShownRate].arm.frames)
+      points.push_back({static_cast<double>(points.size()), frame.scores[kind],
+                        name + ", frame " + std::to_string(points.size()) + "\n" +
+                            decimal_text(static_cast<double>(frame.bytes), 0) + " bytes, " +
+                            decimal_text(frame.scores[kind], kScores[kind].digits)});
+    return points;
+  };
+  Plot plot = plot_of_arms(set, kind, "-frames-", " frame by frame", " of every frame of the films above", points_of);
   plot.x_label = "frame";
-  plot.y_label = kScores[kind].label;
   plot.top_label.clear();
   plot.log_x = false;
-  for (size_t arm = 0; arm < kAnimationArmCount; ++arm) {
-    PlotSeries series{kArms[arm].name, kArms[arm].style, {}};
-    const std::vector<ArmFrame>& frames = set.curves[arm].points[kShownRate].arm.frames;
-    for (size_t i = 0; i < frames.size(); ++i)
-      series.points.push_back({static_cast<double>(i), frames[i].scores[kind],
-                               series.name + ", frame " + std::to_string(i) + "\n" +
-                                   decimal_text(static_cast<double>(frames[i].bytes), 0) + " bytes, " +
-                                   decimal_text(frames[i].scores[kind], kScores[kind].digits)});
-    plot.series.push_back(std::move(series));
-  }
   return plot;
 }
 
