@@ -16,6 +16,7 @@
 #include "sim/packet.h"
 #include "sim/server.h"
 #include "sim/video_sequence.h"
+#include "tests/support/client_server.h"
 #include "tests/support/small_scene.h"
 
 namespace {
@@ -23,6 +24,9 @@ namespace {
 using namespace pac;
 using sim::Difference;
 using sim::Prediction;
+using test::make_client;
+using test::send;
+using test::shows_the_same;
 
 struct Mode {
   Prediction prediction;
@@ -40,37 +44,13 @@ sim::Server make_server(const Mode& mode, int key_interval = 132, Isa isa = best
   const auto split = sim::make_split("texture", scene, {4, true});
   REQUIRE(split.ok());
   sim::ServerOptions options;
-  options.width = 90;  // no multiple of 16
-  options.height = 71;
   options.codec = sim::Codec::mpeg1;
   options.video.prediction = mode.prediction;
   options.video.difference = mode.difference;
   options.video.key_interval = key_interval;
   options.video.quantizer_scale = quantizer;
   options.isa = isa;
-  auto server = sim::Server::create(std::move(scene), *split, options);
-  REQUIRE(server.ok());
-  return std::move(*server);
-}
-
-sim::Client make_client(const sim::Server& server, Isa isa = best_isa()) {
-  sim::ClientOptions options;
-  options.isa = isa;
-  auto client = sim::Client::create(server.session(), options);
-  REQUIRE(client.ok());
-  return std::move(*client);
-}
-
-// A walk that never comes back to where it was.
-Bytes send(sim::Server& server, int number) {
-  auto packet = server.frame(static_cast<uint32_t>(number), test::small_camera(number % 40, 90.0f / 71.0f));
-  REQUIRE(packet.ok());
-  return std::move(*packet);
-}
-
-bool shows_the_same(const Result<RgbImage>& shown, const sim::Server& server) {
-  REQUIRE(shown.ok());
-  return sim::image_hash(shown->view()) == sim::image_hash(server.last_frame().composite.view());
+  return test::make_server(std::move(scene), *split, options);
 }
 
 TEST_CASE("the client shows what the server predicts over 60 frames in every mode: nothing drifts") {

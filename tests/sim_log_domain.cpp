@@ -10,6 +10,7 @@
 #include "sim/difference.h"
 #include "sim/log_domain.h"
 #include "sim/server.h"
+#include "tests/support/client_server.h"
 #include "tests/support/small_scene.h"
 
 namespace {
@@ -55,29 +56,22 @@ sim::Server make_server(sim::Residual residual, double quantizer, Isa isa = best
   REQUIRE(split.ok());
   CHECK(split->differs_in_light());
   sim::ServerOptions options;
-  options.width = 90;
-  options.height = 71;
   options.codec = sim::Codec::mpeg1;
   options.video.residual = residual;
   options.video.quantizer_scale = quantizer;
   options.isa = isa;
-  auto server = sim::Server::create(std::move(scene), *split, options);
-  REQUIRE(server.ok());
-  return std::move(*server);
+  return test::make_server(std::move(scene), *split, options);
 }
 
 TEST_CASE("ratios: the client shows what the server does over 60 frames, whatever the instruction set") {
   sim::Server server = make_server(sim::Residual::ratio, 5), scalar = make_server(sim::Residual::ratio, 5, Isa::scalar);
-  sim::ClientOptions options;
-  options.isa = Isa::scalar;
-  auto client = sim::Client::create(server.session(), options);
-  REQUIRE(client.ok());
+  sim::Client client = test::make_client(server, Isa::scalar);
   for (int number = 0; number < 60; ++number) {
     const raster::Camera camera = test::small_camera(number % 40, 90.0f / 71.0f);
     const auto packet = server.frame(static_cast<uint32_t>(number), camera);
     REQUIRE(packet.ok());
     if (number < 8) CHECK(*packet == *scalar.frame(static_cast<uint32_t>(number), camera));
-    const auto shown = client->receive(*packet);
+    const auto shown = client.receive(*packet);
     REQUIRE(shown.ok());
     REQUIRE(sim::image_hash(shown->view()) == sim::image_hash(server.last_frame().composite.view()));
   }

@@ -21,11 +21,14 @@
 #include "sim/scene_parts.h"
 #include "sim/scene_room.h"
 #include "sim/server.h"
+#include "tests/support/client_server.h"
 #include "tests/support/small_scene.h"
 
 namespace {
 
 using namespace pac;
+using test::make_client;
+using test::shows_the_same;
 
 constexpr uint32_t kBallFrom = 98;  // vertices of floor and wall, in the fine and in the coarse model
 
@@ -53,23 +56,11 @@ sim::Server make_server(const char* split_name, bool transmit, bool is_video, bo
   const auto split = sim::make_split(split_name, scene, {4});
   REQUIRE(split.ok());
   sim::ServerOptions options;
-  options.width = 90;  // no multiple of 16
-  options.height = 71;
   options.transmit_model = transmit;
   options.codec = is_video ? sim::Codec::mpeg1 : sim::Codec::jpeg;
   options.video.quantizer_scale = 6;
   options.isa = options.coding.isa = isa;
-  auto server = sim::Server::create(std::move(scene), *split, options);
-  REQUIRE(server.ok());
-  return std::move(*server);
-}
-
-sim::Client make_client(const sim::Server& server, Isa isa = best_isa()) {
-  sim::ClientOptions options;
-  options.isa = isa;
-  auto client = sim::Client::create(server.session(), options);
-  REQUIRE(client.ok());
-  return std::move(*client);
+  return test::make_server(std::move(scene), *split, options);
 }
 
 Bytes send(sim::Server& server, int number) {
@@ -78,11 +69,6 @@ Bytes send(sim::Server& server, int number) {
   auto packet = server.frame(static_cast<uint32_t>(number), test::small_camera(0, 90.0f / 71.0f));
   REQUIRE(packet.ok());
   return std::move(*packet);
-}
-
-bool shows_the_same(const Result<RgbImage>& shown, const sim::Server& server) {
-  REQUIRE(shown.ok());
-  return sim::image_hash(shown->view()) == sim::image_hash(server.last_frame().composite.view());
 }
 
 // The transforms through a change against `before`; its size in bits.

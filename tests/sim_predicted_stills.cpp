@@ -11,49 +11,28 @@
 #include "sim/packet.h"
 #include "sim/predicted_stills.h"
 #include "sim/server.h"
+#include "tests/support/client_server.h"
 #include "tests/support/small_scene.h"
 
 namespace {
 
 using namespace pac;
-
-constexpr int kWidth = 90, kHeight = 71;  // no multiples of 16
+using test::make_client;
+using test::send;
+using test::shows_the_same;
 
 sim::Server make_server(sim::Codec codec, double quality = 50, int key_interval = 132, Isa isa = best_isa()) {
   sim::SceneSet scene = test::small_scene(false);
   const auto split = sim::make_split("texture", scene, {4});
   REQUIRE(split.ok());
   sim::ServerOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
   options.quality = quality;
   options.codec = codec;
   options.coding.tables = sim::TableFamily::adapted;
   options.coding.huffman = jpeg::Huffman::optimal;
   options.video.key_interval = key_interval;
   options.isa = options.coding.isa = isa;
-  auto server = sim::Server::create(std::move(scene), *split, options);
-  REQUIRE(server.ok());
-  return std::move(*server);
-}
-
-sim::Client make_client(const sim::Server& server, Isa isa = best_isa()) {
-  sim::ClientOptions options;
-  options.isa = isa;
-  auto client = sim::Client::create(server.session(), options);
-  REQUIRE(client.ok());
-  return std::move(*client);
-}
-
-Bytes send(sim::Server& server, int number) {
-  auto packet = server.frame(static_cast<uint32_t>(number), test::small_camera(number % 40, 90.0f / 71.0f));
-  REQUIRE(packet.ok());
-  return std::move(*packet);
-}
-
-bool shows_the_same(const Result<RgbImage>& shown, const sim::Server& server) {
-  REQUIRE(shown.ok());
-  return sim::image_hash(shown->view()) == sim::image_hash(server.last_frame().composite.view());
+  return test::make_server(std::move(scene), *split, options);
 }
 
 TEST_CASE("predicted stills: the client shows what the server predicts over 150 frames: nothing drifts") {
@@ -149,8 +128,8 @@ TEST_CASE("predicted stills need a resident model; blocks predict none") {
   const auto split = sim::make_split("texture", scene, {4});
   REQUIRE(split.ok());
   sim::ServerOptions options;
-  options.width = kWidth;
-  options.height = kHeight;
+  options.width = test::kSmallWidth;
+  options.height = test::kSmallHeight;
   options.codec = sim::Codec::predicted_jpeg;
   options.transmit_model = true;
   CHECK(!sim::Server::create(test::small_scene(false), *split, options).ok());
@@ -162,8 +141,8 @@ TEST_CASE("predicted stills need a resident model; blocks predict none") {
 
 TEST_CASE("motion JPEG of both arms at equal bytes, predicted: the client shows it") {
   sim::AnimationOptions options;
-  options.render.width = kWidth;
-  options.render.height = kHeight;
+  options.render.width = test::kSmallWidth;
+  options.render.height = test::kSmallHeight;
   options.render.samples = 4;
   options.render.split = "texture";
   options.coding.huffman = jpeg::Huffman::optimal;
