@@ -81,23 +81,14 @@ struct Group {
   }
 };
 
-void require_equal(const RasterTriangle& a, const RasterTriangle& b) {
-  REQUIRE(a.x0 == b.x0);
-  REQUIRE(a.y0 == b.y0);
-  REQUIRE(std::memcmp(a.a, b.a, sizeof a.a) == 0);
-  REQUIRE(std::memcmp(a.b, b.b, sizeof a.b) == 0);
-  REQUIRE(a.min_x == b.min_x);
-  REQUIRE(a.min_y == b.min_y);
-  REQUIRE(a.max_x == b.max_x);
-  REQUIRE(a.max_y == b.max_y);
-  REQUIRE(a.area2 == b.area2);
+bool are_equal(const RasterTriangle& a, const RasterTriangle& b) {
   const float depth_a[] = {a.z0, a.dzdx, a.dzdy, a.z_min, a.z_max},
               depth_b[] = {b.z0, b.dzdx, b.dzdy, b.z_min, b.z_max};
-  REQUIRE(std::memcmp(depth_a, depth_b, sizeof depth_a) == 0);
-  REQUIRE(std::memcmp(a.w, b.w, sizeof a.w) == 0);
-  REQUIRE(a.shift == b.shift);
-  REQUIRE(a.covered == b.covered);
-  REQUIRE(std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0);
+  return a.x0 == b.x0 && a.y0 == b.y0 && std::memcmp(a.a, b.a, sizeof a.a) == 0 &&
+         std::memcmp(a.b, b.b, sizeof a.b) == 0 && a.min_x == b.min_x && a.min_y == b.min_y && a.max_x == b.max_x &&
+         a.max_y == b.max_y && a.area2 == b.area2 && std::memcmp(depth_a, depth_b, sizeof depth_a) == 0 &&
+         std::memcmp(a.w, b.w, sizeof a.w) == 0 && a.shift == b.shift && a.covered == b.covered &&
+         std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0;
 }
 
 SetupRules random_rules(Random& random) {
@@ -124,7 +115,7 @@ TEST_CASE(
       REQUIRE(a.drawn == b.drawn);
       REQUIRE(a.front == b.front);
       REQUIRE(a.degenerate == b.degenerate);
-      for (int k = 0; k < std::popcount(a.drawn); ++k) require_equal(expected[k], actual[k]);
+      for (int k = 0; k < std::popcount(a.drawn); ++k) REQUIRE(are_equal(expected[k], actual[k]));
       n_drawn += static_cast<uint64_t>(std::popcount(a.drawn));
       n_degenerate += static_cast<uint64_t>(std::popcount(a.degenerate));
     }

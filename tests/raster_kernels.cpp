@@ -50,6 +50,10 @@ TEST_CASE("rasterize: every instruction set gives the scalar bits, from slivers 
   });
 }
 
+bool same_pack(const LanePack& a, const LanePack& b) {
+  return a.triangle == b.triangle && a.x == b.x && a.y == b.y && a.mask == b.mask;
+}
+
 // What the samples of a tile see, by the grid kernels of one instruction set.
 struct GridTile {
   alignas(32) uint32_t whole[kTilePixels];
@@ -104,11 +108,13 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
           kernels_for(Isa::scalar)
               ->tile.rasterize(*list[i], i + 1, {corner + tile.grid.x[s], corner + tile.grid.y[s]}, expected.depth,
                                expected.ids);
-        for (int pixel = 0; pixel < kTilePixels; ++pixel) REQUIRE(tile.id_at(pixel, s) == expected.ids[pixel]);
+        bool same = true;
+        for (int pixel = 0; pixel < kTilePixels; ++pixel) same = same && tile.id_at(pixel, s) == expected.ids[pixel];
         for (int pixel = 0; s == 0 && pixel < kTilePixels; ++pixel) {
-          REQUIRE(first.depth[pixel] == expected.depth[pixel]);
-          REQUIRE(first.ids[pixel] == (expected.ids[pixel] == 0 ? 0 : 999 + expected.ids[pixel]));
+          same = same && first.depth[pixel] == expected.depth[pixel];
+          same = same && first.ids[pixel] == (expected.ids[pixel] == 0 ? 0 : 999 + expected.ids[pixel]);
         }
+        REQUIRE(same);
       }
       for (const uint32_t id : tile.whole) (id == kSplitPixel ? n_split : n_whole) += id != 0 ? 1 : 0;
     }
@@ -136,10 +142,7 @@ TEST_CASE("collect_grid: every instruction set gives the scalar packs, whichever
       const int n = scalar.tile.collect_grid(tile.grid, samples, first, first + 8, width, list.data(), expected.data());
       REQUIRE(table.tile.collect_grid(tile.grid, samples, first, first + 8, width, list.data(), actual.data()) == n);
       for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-        REQUIRE(expected[i].triangle == actual[i].triangle);
-        REQUIRE(expected[i].x == actual[i].x);
-        REQUIRE(expected[i].y == actual[i].y);
-        REQUIRE(expected[i].mask == actual[i].mask);
+        REQUIRE(same_pack(expected[i], actual[i]));
         REQUIRE(std::memcmp(expected[i].weight, actual[i].weight, 8) == 0);
       }
     }
@@ -183,10 +186,7 @@ TEST_CASE("collect_packs: every instruction set gives the scalar packs") {
       const int n = scalar.tile.collect_packs(ids, width, height, list.data(), expected.data());
       REQUIRE(table.tile.collect_packs(ids, width, height, list.data(), actual.data()) == n);
       for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-        REQUIRE(expected[i].triangle == actual[i].triangle);
-        REQUIRE(expected[i].x == actual[i].x);
-        REQUIRE(expected[i].y == actual[i].y);
-        REQUIRE(expected[i].mask == actual[i].mask);
+        REQUIRE(same_pack(expected[i], actual[i]));
       }
     }
   });

@@ -42,12 +42,13 @@ Drawn draw(const Scene& scene, const Camera& camera, const RenderQuality& qualit
     return drawn;
   }
   drawn.stats = *result;
+  bool in_range = true;
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
-      REQUIRE(*drawn.depth.pixel(x, y) >= 0.0f);
-      REQUIRE(*drawn.depth.pixel(x, y) <= 1.0f);
-      REQUIRE(*drawn.id.pixel(x, y) <= scene.mesh.faces.size());
+      const float depth = *drawn.depth.pixel(x, y);
+      in_range = in_range && depth >= 0.0f && depth <= 1.0f && *drawn.id.pixel(x, y) <= scene.mesh.faces.size();
     }
+  REQUIRE(in_range);
   drawn.hash = hash_pixels(drawn.id.view(), hash_pixels(drawn.depth.view(), hash_pixels(drawn.color.view())));
   return drawn;
 }
