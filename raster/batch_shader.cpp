@@ -126,7 +126,8 @@ const float* BatchShader::opacity(const Batch& batch) {
 
 InterpolateTarget BatchShader::interpolate_target(const Surface& surface, const ShadePass& pass) {
   const AttributeLayout& layout = surface.layout;
-  InterpolateTarget target{pass.rendering, layout.count, rows_, nullptr, layout.uv, 0, 0, surface.lod_bias};
+  InterpolateTarget target{pass.rendering,   layout.count, rows_, nullptr, layout.uv, 0, 0,
+                           surface.lod_bias, pass.inside};
   if (surface.textured || surface.alpha_textured) {
     target.lod = lod_;
     target.width = static_cast<float>(surface.sampler.width[0]);

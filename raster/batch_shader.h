@@ -11,7 +11,8 @@ struct ShadePass {
   int rendering;      // which of RasterTriangle::attributes
   int number, count;  // of the places where a pixel is shaded
   SamplePosition origin;
-  bool weighted;  // the packs' lanes stand for several samples
+  bool weighted;        // the packs' lanes stand for several samples
+  bool inside = false;  // of packs: the samples of the masks are inside their triangles
 };
 
 // Rows of kBatchLanes for accumulate() and blend(): color * texel / 255 + added, clamped. Valid until the next call.
@@ -42,6 +43,13 @@ class BatchShader {
   static bool has_final_colors(const Surface& surface) {
     return surface.lit != Surface::Lit::per_sample && !surface.textured && !surface.fogged && surface.maps == nullptr &&
            surface.layout.count == 3 && surface.alpha == AlphaMode::opaque;
+  }
+  // Final colors like those, or textured ones that nothing is added to: TileKernels::paint_textured() does it all.
+  static bool has_painted_colors(const Surface& surface) {
+    const AttributeLayout& layout = surface.layout;
+    return has_final_colors(surface) ||
+           (surface.textured && surface.lit != Surface::Lit::per_sample && !surface.fogged && surface.maps == nullptr &&
+            surface.max_probes == 1 && layout.count == 5 && layout.uv == 3 && surface.alpha == AlphaMode::opaque);
   }
   // Takes the samples whose opacity is below the cutoff off the packs' masks. The surface's alpha is AlphaMode::mask.
   void cut_out(const TileKernels& kernels, const Surface& surface, const ShadePass& pass, LanePack* packs, int n);

@@ -23,6 +23,7 @@ struct Renderer::State {
   ThreadPool pool;
   DrawList draw_list;
   std::vector<Surface> surfaces[2];
+  std::vector<PaintedSurface> painted[2];  // of them
   OccluderTree occluders;
   ShadowScene shadows[2];
   ShadowMaps shadow_maps[2];
@@ -87,7 +88,7 @@ Result<Renderer> Renderer::create(int width, int height, const RendererOptions& 
   const Kernels* kernels = kernels_for(options.isa);
   if (kernels == nullptr) return Failure{Error::bad_argument, 0, "instruction set not available"};
   std::unique_ptr<State> state(
-      new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}, {}, {}, {}});
+      new State{width, height, kernels, ThreadPool(options.threads), {}, {}, {}, {}, {}, {}, {}, {}, {}});
   for (int i = 0; i < state->pool.thread_count(); ++i) state->painters.push_back(std::make_unique<TilePainter>());
   return Renderer(std::move(state));
 }
@@ -164,6 +165,11 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
     frame.surfaces[r] = input.surfaces[r] = &surfaces[r];
     input.has_final_colors[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::has_final_colors);
     input.shades_lanes[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::shades_lanes);
+    painted[r].clear();
+    for (const Surface& surface : surfaces[r])
+      painted[r].push_back({surface.textured ? &surface.sampler : nullptr, surface.lod_bias});
+    const bool paints = std::all_of(surfaces[r].begin(), surfaces[r].end(), BatchShader::has_painted_colors);
+    input.painted[r] = paints ? painted[r].data() : nullptr;
     input.has_one_batch[r] = std::all_of(surfaces[r].begin(), surfaces[r].end(), [&](const Surface& surface) {
       return surface.batch == surfaces[r].front().batch;
     });

@@ -96,8 +96,11 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
 void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, int rendering,
                                     std::span<const ShadingGroup> samples) {
   const auto count = static_cast<int>(input.pattern.size());
+  // As add_colors() and interpolate_groups() do it with the groups that are not whole.
+  const bool interpolates_planes =
+      input.has_final_colors[rendering] || input.painted[rendering] != nullptr || input.shades_lanes[rendering];
   const auto pass = [&](const ShadingGroup& sample) {
-    return ShadePass{rendering, sample.number, count, position(area, sample.place), false};
+    return ShadePass{rendering, sample.number, count, position(area, sample.place), false, interpolates_planes};
   };
   take_whole_groups(area, rendering);
   for (const ShadingGroup& sample : samples) shade_whole_groups(input, pass(sample), sums_[rendering]);

@@ -73,9 +73,10 @@ void TilePainter::write_first_sample(const PaintInput& input, const Area& area) 
   if (!input.previous.empty()) write_previous(input, area, origin);
 }
 
-// One sample a pixel whose colors need nothing but interpolation: they go to the target without sums.
+// One sample a pixel whose colors need nothing but interpolation and a texture: they go to the target without sums.
 bool TilePainter::paints_directly(const PaintInput& input, int rendering) const {
-  return input.pattern.size() == 1 && input.has_final_colors[rendering] && !has_masked_ && !has_blended_;
+  const bool paints = input.has_final_colors[rendering] || input.painted[rendering] != nullptr;
+  return input.pattern.size() == 1 && paints && !has_masked_ && !has_blended_;
 }
 
 void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, int rendering) {
@@ -83,10 +84,15 @@ void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, 
   if (!paints_directly(input, rendering))
     return shade_ids(input, {rendering, 0, 1, origin, false}, ids_, area.width, area.height, sums_[rendering]);
   const RgbView& target = input.color[rendering];
-  const bool has_target = !target.empty();
-  input.kernels->tile.paint_colors(ids_, area.width, area.height, triangles_.data(), rendering, origin,
-                                   input.background, has_target ? target.pixel(area.x, area.y) : rgb_[rendering],
-                                   has_target ? target.stride : ptrdiff_t{3 * kTileSize});
+  uint8_t* const rgb = target.empty() ? rgb_[rendering] : target.pixel(area.x, area.y);
+  const ptrdiff_t stride = target.empty() ? ptrdiff_t{3 * kTileSize} : target.stride;
+  const TileKernels& kernels = input.kernels->tile;
+  if (input.has_final_colors[rendering])
+    kernels.paint_colors(ids_, area.width, area.height, triangles_.data(), rendering, origin, input.background, rgb,
+                         stride);
+  else
+    kernels.paint_textured(ids_, area.width, area.height, triangles_.data(), rendering, origin,
+                           input.painted[rendering], input.background, rgb, stride);
 }
 
 // What one sample a pixel sees, rows of `ids` from the pass's origin down, to the sums of the same rows.
@@ -95,6 +101,11 @@ void TilePainter::shade_ids(const PaintInput& input, const ShadePass& pass, cons
   const TileKernels& kernels = input.kernels->tile;
   if (input.has_final_colors[pass.rendering]) {
     kernels.add_colors(ids, width, height, triangles_.data(), pass.rendering, pass.origin, input.background, sums);
+    return;
+  }
+  if (input.painted[pass.rendering] != nullptr) {
+    kernels.add_textured(ids, width, height, triangles_.data(), pass.rendering, pass.origin,
+                         input.painted[pass.rendering], input.background, sums);
     return;
   }
   const bool by_groups = input.shades_lanes[pass.rendering];

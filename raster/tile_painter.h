@@ -24,6 +24,7 @@ struct PaintInput {
   int shading_samples[2];                   // of each rendering, as RenderQuality
   bool has_final_colors[2];                 // of each rendering: BatchShader::has_final_colors() of all its surfaces
   bool shades_lanes[2];                     // the same of BatchShader::shades_lanes()
+  const PaintedSurface* painted[2];         // one a surface, where the same of has_painted_colors(); else null
   bool has_one_batch[2];                    // of each rendering: all surfaces have the same `batch`
   bool has_transparent;                     // some material's alpha is not opaque
   uint8_t background[3];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>
@@ -88,7 +89,7 @@ bool are_equal(const RasterTriangle& a, const RasterTriangle& b) {
          std::memcmp(a.b, b.b, sizeof a.b) == 0 && a.min_x == b.min_x && a.min_y == b.min_y && a.max_x == b.max_x &&
          a.max_y == b.max_y && a.area2 == b.area2 && std::memcmp(depth_a, depth_b, sizeof depth_a) == 0 &&
          std::memcmp(a.w, b.w, sizeof a.w) == 0 && a.shift == b.shift && a.covered == b.covered &&
-         std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0;
+         a.planar == b.planar && std::memcmp(a.exclude, b.exclude, sizeof a.exclude) == 0;
 }
 
 SetupRules random_rules(Random& random) {
@@ -416,7 +417,8 @@ std::vector<uint16_t> colors_by_packs(const SeenTile& tile, int width, int heigh
   std::vector<float> rows(3 * kBatchLanes);
   for (int first = 0; first < n; first += kBatchPacks) {
     const int count = std::min(kBatchPacks, n - first);
-    scalar.interpolate(packs.data() + first, count, tile.origin, {rendering, 3, rows.data(), nullptr, 0, 0, 0, 0});
+    scalar.interpolate(packs.data() + first, count, tile.origin,
+                       {rendering, 3, rows.data(), nullptr, 0, 0, 0, 0, true});
     scalar.accumulate(packs.data() + first, count, false, rows.data(), nullptr, nullptr, background, sums.data());
   }
   return sums;
@@ -483,7 +485,7 @@ TEST_CASE("collect_groups, interpolate_groups: each lane gets the bits that the 
         const int count = std::min(kBatchPacks, n - first);
         const LanePack* const at = packs.data() + first;
         std::vector<float> expected(kBatchLanes * (kMaxAttributes + 1), -1.0f), actual = expected, own = expected;
-        InterpolateTarget target{rendering, attributes, expected.data(), nullptr, 3, 256, 64, -1};
+        InterpolateTarget target{rendering, attributes, expected.data(), nullptr, 3, 256, 64, -1, true};
         const auto with_rows = [&](std::vector<float>& rows) {
           target.rows = rows.data();
           target.lod = round % 3 == 0 ? nullptr : rows.data() + kBatchLanes * kMaxAttributes;
@@ -503,6 +505,115 @@ TEST_CASE("collect_groups, interpolate_groups: each lane gets the bits that the 
                     std::bit_cast<uint32_t>(actual[row * kBatchLanes + i]));
         }
       }
+    }
+  }
+}
+
+TEST_CASE("interpolate: in planar triangles planes give what weights give, within 2^-13 of the corners' differences") {
+  const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+  int n_planar = 0, n_loose = 0;
+  for (uint32_t round = 0; round < 300; ++round) {
+    const SeenTile tile(round);
+    std::vector<LanePack> packs(kTilePixels);
+    const int n = scalar.collect_packs(tile.ids, kTileSize, kTileSize, tile.list.data(), packs.data());
+    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+      const RasterTriangle& t = *packs[i].triangle;
+      (t.planar != 0 ? n_planar : n_loose) += 1;
+      std::vector<float> planes(kBatchLanes * 6), weights = planes;
+      for (int inside = 0; inside < 2; ++inside) {
+        std::vector<float>& rows = inside != 0 ? planes : weights;
+        scalar.interpolate(&packs[i], 1, tile.origin,
+                           {0, 5, rows.data(), rows.data() + 5 * kBatchLanes, 3, 256, 64, 0, inside != 0});
+      }
+      for (size_t row = 0; row < 6; ++row)
+        for (size_t k = 0; k < 8; ++k) {
+          if ((packs[i].mask >> k & 1) == 0) continue;
+          const float* const a = t.attributes[0] + 3 * row;
+          const float difference = row < 5 ? std::max(std::fabs(a[1]), std::fabs(a[2])) : 64.0f;
+          REQUIRE(std::fabs(planes[row * kBatchLanes + k] - weights[row * kBatchLanes + k]) <= difference * 0x1p-13f);
+        }
+    }
+  }
+  CHECK(n_planar > 1000);
+  CHECK(n_loose > 1000);
+}
+
+// A chain of random texels; level i + 1 half as wide and high.
+struct NoiseTexture {
+  std::vector<uint8_t> texels;
+  TextureSampler sampler{};
+
+  NoiseTexture(Random& random, int width, int height, int filter, bool clamp) {
+    sampler.filter = filter;
+    sampler.clamp = clamp ? 1 : 0;
+    for (int w = width, h = height;; w = std::max(w / 2, 1), h = std::max(h / 2, 1)) {
+      const int level = sampler.level_count++;
+      sampler.offset[level] = static_cast<int32_t>(texels.size() / 4);
+      sampler.width[level] = w;
+      sampler.height[level] = h;
+      sampler.pitch[level] = w + 1;
+      for (int i = 0; i < 4 * (w + 1) * h; ++i) texels.push_back(static_cast<uint8_t>(random.bits()));
+      if (w == 1 && h == 1) break;
+    }
+    sampler.texels = texels.data();
+  }
+};
+
+TEST_CASE(
+    "add_textured, paint_textured: what interpolation, texture filter and accumulation give one after the other") {
+  const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+  Random random(71);
+  const NoiseTexture textures[2] = {{random, 64, 32, 2, false}, {random, 24, 20, 2, true}};
+  const PaintedSurface surfaces[3] = {{&textures[0].sampler, 0}, {nullptr, 0}, {&textures[1].sampler, -2}};
+  const uint8_t background[3] = {10, 200, 255};
+  for (uint32_t round = 0; round < 40; ++round) {
+    SeenTile tile(round);
+    for (std::vector<float>& record : tile.input.attributes)
+      for (size_t i = 9; i < 15; ++i) record[i] *= 0.01f;
+    const int width = 1 + static_cast<int>(random.bits() % kTileSize), height = 32 - static_cast<int>(round % 4);
+    const int rendering = static_cast<int>(round % 2);
+    std::vector<LanePack> packs(kTilePixels);
+    const int n = scalar.collect_groups(tile.ids, width, height, tile.list.data(), rendering, packs.data());
+    std::vector<uint16_t> expected;
+    for (int c = 0; c < 3; ++c) expected.insert(expected.end(), kTilePixels, background[c]);
+    std::vector<float> rows(9 * kBatchLanes);
+    float *const lod = rows.data() + 5 * kBatchLanes, *const texels = lod + kBatchLanes;
+    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+      const PaintedSurface& surface = surfaces[packs[i].triangle->state[rendering]];
+      const TextureSampler* const texture = surface.texture;
+      InterpolateTarget target{rendering, 3, rows.data(), nullptr, 3, 0, 0, surface.lod_bias};
+      if (texture != nullptr)
+        target = {rendering,
+                  5,
+                  rows.data(),
+                  lod,
+                  3,
+                  static_cast<float>(texture->width[0]),
+                  static_cast<float>(texture->height[0]),
+                  surface.lod_bias};
+      scalar.interpolate_groups(&packs[i], 1, tile.ids, tile.list.data(), tile.origin, target);
+      if (texture != nullptr)
+        scalar.sample_texture(*texture, 8, rows.data() + 3 * kBatchLanes, rows.data() + 4 * kBatchLanes, lod, texels);
+      scalar.accumulate(&packs[i], 1, false, rows.data(), texture != nullptr ? texels : nullptr, nullptr, background,
+                        expected.data());
+    }
+    for (int isa = 0; isa < kIsaCount; ++isa) {
+      const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+      if (table == nullptr) continue;
+      std::vector<uint16_t> sums;
+      for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+      table->tile.add_textured(tile.ids, width, height, tile.list.data(), rendering, tile.origin, surfaces, background,
+                               sums.data());
+      REQUIRE(expected == sums);
+      const ptrdiff_t stride = 3 * kTileSize + 5;
+      std::vector<uint8_t> rgb(static_cast<size_t>(stride) * kTileSize, 77), wanted = rgb;
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < 3 * width; ++x)
+          wanted[static_cast<size_t>(y * stride + x)] =
+              static_cast<uint8_t>(expected[static_cast<size_t>(x % 3 * kTilePixels + y * kTileSize + x / 3)]);
+      table->tile.paint_textured(tile.ids, width, height, tile.list.data(), rendering, tile.origin, surfaces,
+                                 background, rgb.data(), stride);
+      REQUIRE(wanted == rgb);
     }
   }
 }

@@ -155,8 +155,15 @@ TEST_CASE("interpolate: every instruction set gives the scalar bits, inside and 
       const int n = 1 + static_cast<int>(seed * 7 % kBatchPacks);
       const PackedTriangles input = random_packs(seed, n);
       std::vector<float> expected(kBatchLanes * (kMaxAttributes + 1), -1.0f), actual = expected;
-      InterpolateTarget target{
-          static_cast<int>(seed % 2), static_cast<int>(3 + seed % 9), expected.data(), nullptr, 1, 256, 64, -1};
+      InterpolateTarget target{static_cast<int>(seed % 2),
+                               static_cast<int>(3 + seed % 9),
+                               expected.data(),
+                               nullptr,
+                               1,
+                               256,
+                               64,
+                               -1,
+                               seed % 3 != 0};
       for (int with_lod = 0; with_lod < 2; ++with_lod) {
         target.rows = expected.data();
         target.lod = with_lod != 0 ? expected.data() + kBatchLanes * kMaxAttributes : nullptr;

@@ -51,6 +51,10 @@ struct SetupRules {
 
 constexpr int kSetupLanes = 8;
 
+// Planar triangles: width and height together are at least so many 1/256 pixel, as planes do not pay for fewer pixels,
+// and area2 times the least of the corners' w is at least 1 / kPlanarRatio of their product.
+constexpr float kSmallestPlanar = 8 * 256, kPlanarRatio = 128;
+
 // Bit k: triangle k of the group.
 struct SetupMasks {
   uint32_t drawn;       // set up

@@ -37,9 +37,13 @@ struct alignas(64) RasterTriangle {
   uint32_t state[2];                   // per rendering: how it is shaded
   // Per rendering: a0, a1 - a0, a2 - a0 for each attribute. [2]: clip coordinates in the previous frame.
   const float* attributes[3];
-  uint8_t shift;  // smallest k >= 0 with area2 >> k < 2^31
+  uint8_t shift;   // smallest k >= 0 with area2 >> k < 2^31
+  uint8_t planar;  // 1: attributes inside are interpolated as planes, see planes_simd.inc
 };
 static_assert(sizeof(RasterTriangle) == 128);
+
+// What 1/w inside planar triangles stays above; outside it is raised to it.
+constexpr float kLeastPlanarW = 0x1p-9f;
 
 // The sample of the tile's pixel (0, 0): 256 * tile origin + sample offset.
 struct SamplePosition {
@@ -85,6 +89,7 @@ struct InterpolateTarget {
   int uv;               // number of the attribute u; v follows
   float width, height;  // of level 0
   float lod_bias;
+  bool inside = false;  // interpolate() alone: all samples of the masks are inside their triangles
 };
 
 // Rows that footprint() writes: how far one pixel reaches in a texture. A pixel's footprint is the parallelogram of the
@@ -112,6 +117,13 @@ struct TextureSampler {
   int32_t offset[kMaxMipLevels];                        // first texel of the level
   int32_t width[kMaxMipLevels], height[kMaxMipLevels];  // of level i: max(1, that of level 0 >> i)
   int32_t pitch[kMaxMipLevels];                         // width + 1
+};
+
+// What add_textured() and paint_textured() shade by one RasterTriangle::state: attributes 0..2 are the color and, where
+// there is a texture to multiply it, 3 and 4 its coordinates.
+struct PaintedSurface {
+  const TextureSampler* texture;  // or null
+  float lod_bias;
 };
 
 // Colors in units where 255 is full intensity; everything finite, magnitudes below 2^20.
@@ -212,7 +224,8 @@ struct TileKernels {
   int (*collect_groups)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
                         int rendering, LanePack* packs);
 
-  // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too.
+  // Perspective-correct attributes (and LOD) of 8 * n lanes. Lanes outside a pack's mask get finite values too. Where
+  // target.inside says so, by planes in planar triangles.
   void (*interpolate)(const LanePack* packs, int n, SamplePosition origin, const InterpolateTarget& target);
 
   // The same for n lanes of any triangles, rounded up to 8: each gets the bits that its pack would give it. The records
@@ -220,8 +233,8 @@ struct TileKernels {
   void (*interpolate_lanes)(const LaneSample* samples, int n, SamplePosition origin, const InterpolateTarget& target);
 
   // The same for packs of collect_groups() from ids of samples that are inside their triangles: each lane of a mask
-  // gets the bits that the pack of its own triangle would give it, the others those of the triangle in the lowest lane.
-  // Records of attributes as for interpolate_lanes().
+  // gets the bits that the pack of its own triangle would give it with target.inside, the others those of the triangle
+  // in the lowest lane. Records of attributes as for interpolate_lanes().
   void (*interpolate_groups)(const LanePack* packs, int n, const uint32_t* ids, const RasterTriangle* const* triangles,
                              SamplePosition origin, const InterpolateTarget& target);
 
@@ -286,9 +299,9 @@ struct TileKernels {
   void (*accumulate_lanes)(const LaneSample* samples, int n, bool weighted, const float* color, const float* texels,
                            const float* specular, const uint8_t background[3], uint16_t* sums);
 
-  // collect_packs(), interpolate() of attributes 0..2 and accumulate() of them as final colors, in one: the colors of
-  // all samples in the ids, which are inside their triangles, are added to the sums. Groups of eight are read whole.
-  // Records of attributes as for interpolate_lanes().
+  // collect_packs(), interpolate() inside of attributes 0..2 and accumulate() of them as final colors, in one: the
+  // colors of all samples in the ids, which are inside their triangles, are added to the sums. Groups of eight are read
+  // whole. Records of attributes as for interpolate_lanes().
   void (*add_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
                      SamplePosition origin, const uint8_t background[3], uint16_t* sums);
 
@@ -296,6 +309,15 @@ struct TileKernels {
   void (*paint_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
                        int rendering, SamplePosition origin, const uint8_t background[3], uint8_t* rgb,
                        ptrdiff_t stride);
+
+  // The same two with textures: `surfaces` of the triangles' states in the rendering. What collect_groups(),
+  // interpolate_groups(), sample_texture() and accumulate() do, in one.
+  void (*add_textured)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
+                       int rendering, SamplePosition origin, const PaintedSurface* surfaces,
+                       const uint8_t background[3], uint16_t* sums);
+  void (*paint_textured)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
+                         int rendering, SamplePosition origin, const PaintedSurface* surfaces,
+                         const uint8_t background[3], uint8_t* rgb, ptrdiff_t stride);
 
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);
@@ -306,6 +328,7 @@ void fill_tile_scalar(TileKernels& table);
 void fill_grid_scalar(TileKernels& table);
 void fill_shade_scalar(TileKernels& table);    // shade_scalar.cpp: lights, shadows, normals, fog
 void fill_texture_scalar(TileKernels& table);  // texture_scalar.cpp
+void fill_paint_scalar(TileKernels& table);    // paint_scalar.cpp: textured colors in one
 void fill_tile_sse41(TileKernels& table);
 void fill_tile_avx2(TileKernels& table);
 void fill_tile_neon(TileKernels& table);

@@ -188,6 +188,38 @@ void footprint(const LanePack* packs, int n, SamplePosition origin, const Footpr
   }
 }
 
+// The row element `at`: the sample (X, Y) from corner 0 of a planar triangle, inside it. With l_i = E_i w_i / (area2 Q)
+// and the differences d1, d2 of an attribute from corner 0, both Q = w0 + X Q_x + Y Q_y and the sum of d_i E_i w_i /
+// area2 = X N_x + Y N_y are planes.
+void interpolate_plane(const RasterTriangle& t, float x, float y, const InterpolateTarget& target, int at) {
+  const float inverse = 1.0f / static_cast<float>(t.area2);
+  const float x1 = static_cast<float>(t.a[1]) * inverse, x2 = static_cast<float>(t.a[2]) * inverse;
+  const float y1 = static_cast<float>(t.b[1]) * inverse, y2 = static_cast<float>(t.b[2]) * inverse;
+  const float w1 = t.w[1] - t.w[0], w2 = t.w[2] - t.w[0];
+  const float q_x = w1 * x1 + w2 * x2, q_y = w1 * y1 + w2 * y2;
+  const float r = 1.0f / std::max((t.w[0] + y * q_y) + x * q_x, kLeastPlanarW);
+  const float wx1 = t.w[1] * x1, wx2 = t.w[2] * x2, wy1 = t.w[1] * y1, wy2 = t.w[2] * y2;
+  const float* record = t.attributes[target.rendering];
+  struct Plane {
+    float x, y, value;
+  };
+  const auto plane = [&](int j) {  // value: beyond corner 0's
+    const float* a = record + 3 * j;
+    const float n_x = a[1] * wx1 + a[2] * wx2, n_y = a[1] * wy1 + a[2] * wy2;
+    return Plane{n_x, n_y, (y * n_y + x * n_x) * r};
+  };
+  for (int j = 0; j < target.n_attributes; ++j) target.rows[j * kBatchLanes + at] = record[3 * j] + plane(j).value;
+  if (target.lod == nullptr) return;
+  const Plane u = plane(target.uv), v = plane(target.uv + 1);
+  const auto squared_length = [&](float u_step, float v_step, float q_step) {  // by one pixel
+    const float du = (u_step * 256.0f) * target.width - (u.value * target.width) * (q_step * 256.0f);
+    const float dv = (v_step * 256.0f) * target.height - (v.value * target.height) * (q_step * 256.0f);
+    return du * du + dv * dv;
+  };
+  const float rho = std::max(squared_length(u.x, v.x, q_x), squared_length(u.y, v.y, q_y)) * (r * r);
+  target.lod[at] = 0.5f * log2_estimate(std::min(std::max(rho, 0x1p-60f), 0x1p60f)) + target.lod_bias;
+}
+
 // The row element `at`: lane k of the group of eight whose lane 0 has E_1 = first1 and E_2 = first2.
 void interpolate_lane(const RasterTriangle& t, int64_t first1, int64_t first2, int k, const InterpolateTarget& target,
                       int at) {
@@ -205,7 +237,13 @@ void interpolate(const LanePack* packs, int n, SamplePosition origin, const Inte
     const RasterTriangle& t = *packs[p].triangle;
     const int32_t x = origin.x + 256 * packs[p].x - t.x0, y = origin.y + 256 * packs[p].y - t.y0;
     const int64_t first1 = edge(t, 1, x, y), first2 = edge(t, 2, x, y);
-    for (int k = 0; k < 8; ++k) interpolate_lane(t, first1, first2, k, target, 8 * p + k);
+    const bool planar = target.inside && t.planar != 0;
+    for (int k = 0; k < 8; ++k) {
+      if (planar)
+        interpolate_plane(t, static_cast<float>(x + 256 * k), static_cast<float>(y), target, 8 * p + k);
+      else
+        interpolate_lane(t, first1, first2, k, target, 8 * p + k);
+    }
   }
 }
 
@@ -269,11 +307,12 @@ void accumulate_lanes(const LaneSample* samples, int n, bool weighted, const flo
                     specular, background, sums);
 }
 
-// The row element `at`: what pixel (px, py) of the tile would be given by its pack if it showed `t`.
+// The row element `at`: what pixel (px, py) of the tile would be given by its pack if it showed `t`, inside.
 void interpolate_pixel(const RasterTriangle& t, SamplePosition origin, int px, int py, const InterpolateTarget& target,
                        int at) {
   const int k = px & 7;
   const int32_t x = origin.x + 256 * (px - k) - t.x0, y = origin.y + 256 * py - t.y0;
+  if (t.planar != 0) return interpolate_plane(t, static_cast<float>(x + 256 * k), static_cast<float>(y), target, at);
   interpolate_lane(t, edge(t, 1, x, y), edge(t, 2, x, y), k, target, at);
 }
 
@@ -328,6 +367,7 @@ void resolve_row(const uint16_t* sums, int shift, int width, uint8_t* rgb) {
 void fill_tile_scalar(TileKernels& table) {
   fill_shade_scalar(table);
   fill_texture_scalar(table);
+  fill_paint_scalar(table);
   table.rasterize = rasterize;
   table.rasterize_all = rasterize_all;
   table.collect_packs = collect_packs;

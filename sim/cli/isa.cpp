@@ -98,6 +98,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, interpolate_groups),
     PAC_KERNEL(tile, add_colors),
     PAC_KERNEL(tile, paint_colors),
+    PAC_KERNEL(tile, add_textured),
+    PAC_KERNEL(tile, paint_textured),
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
     PAC_KERNEL(warp, filter_points),
