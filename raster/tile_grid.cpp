@@ -102,7 +102,8 @@ void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, i
   const auto pass = [&](const ShadingGroup& sample) {
     return ShadePass{rendering, sample.number, count, position(area, sample.place), false, interpolates_planes};
   };
-  take_whole_groups(area, rendering);
+  n_whole_packs_ = 0;
+  if (input.painted[rendering] == nullptr) take_whole_groups(area, rendering);  // else each square shows what is whole
   for (const ShadingGroup& sample : samples) shade_whole_groups(input, pass(sample), sums_[rendering]);
   for (int row = 0; row < area.height; row += kGridRows) {
     const int n_rows = std::min(kGridRows, area.height - row);
@@ -119,13 +120,16 @@ void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, i
 // What each sample of a few rows sees -> sample_ids_.
 void TilePainter::split_by_sample(const Area& area, int first_row, int n_rows) {
   const auto n_samples = static_cast<size_t>(grid_.n);
-  for (size_t s = 0; s < n_samples; ++s) std::fill_n(sample_ids_[s], n_rows * kTileSize, 0u);
-  for (int i = 0; i < n_rows * kTileSize; ++i) {
-    const int at = first_row * kTileSize + i;
-    if (whole_[at] == 0 || i % kTileSize >= area.width) continue;
-    const bool is_split = whole_[at] == kSplitPixel;
-    for (size_t s = 0; s < n_samples; ++s)
-      sample_ids_[s][i] = is_split ? grid_ids_[static_cast<size_t>(at) * kGridSamples + s] : whole_[at];
+  for (int i = 0; i < n_rows * kTileSize; i += 8) {
+    const int at = first_row * kTileSize + i, n_inside = std::clamp(area.width - i % kTileSize, 0, 8);
+    uint32_t seen[8] = {};
+    std::copy_n(whole_ + at, n_inside, seen);
+    for (size_t s = 0; s < n_samples; ++s) std::copy_n(seen, 8, sample_ids_[s] + i);
+    for (int k = 0; k < n_inside; ++k) {
+      if (seen[k] != kSplitPixel) continue;
+      const uint32_t* const ids = grid_ids_ + static_cast<size_t>(at + k) * kGridSamples;
+      for (size_t s = 0; s < n_samples; ++s) sample_ids_[s][i + k] = ids[s];
+    }
   }
 }
 
