@@ -27,6 +27,43 @@ class FastBitWriter {
     window_ = static_cast<uint64_t>(value) << (64 - rest);
     n_bits_ = rest;
   }
+
+  // Writes in its stead for a while, for whoever keeps it in registers: nobody takes its address. Of at most
+  // `most_bits` bits; the writer rests until take_back().
+  class Loan {
+   public:
+    // As FastBitWriter::put, of 1..32 bits.
+    void put(uint32_t value, int count) {
+      n_bits_ += count;
+      if (n_bits_ <= 64) {
+        window_ |= static_cast<uint64_t>(value) << (64 - n_bits_);
+        return;
+      }
+      const int rest = n_bits_ - 64;  // 1..31 bits for the next window
+      write64(next_, window_ | static_cast<uint64_t>(value) >> rest);
+      next_ += 8;
+      window_ = static_cast<uint64_t>(value) << (64 - rest);
+      n_bits_ = rest;
+    }
+
+   private:
+    friend class FastBitWriter;
+    Loan(uint8_t* next, uint64_t window, int n_bits) : next_(next), window_(window), n_bits_(n_bits) {}
+    uint8_t* next_;
+    uint64_t window_;
+    int n_bits_;
+  };
+  Loan lend(size_t most_bits) {
+    const size_t most_bytes = most_bits / 8 + 8;
+    if (size_ + most_bytes > bytes_.size()) bytes_.resize(2 * bytes_.size() + most_bytes + 4096);
+    return {bytes_.data() + size_, window_, n_bits_};
+  }
+  void take_back(const Loan& loan) {
+    size_ = static_cast<size_t>(loan.next_ - bytes_.data());
+    window_ = loan.window_;
+    n_bits_ = loan.n_bits_;
+  }
+
   void align_to_byte() { n_bits_ = (n_bits_ + 7) & ~7; }
   uint64_t size_bits() const { return uint64_t{8} * size_ + static_cast<uint64_t>(n_bits_); }
 
@@ -54,11 +91,14 @@ class FastBitWriter {
     return static_cast<uint32_t>(p[0]) << 24 | static_cast<uint32_t>(p[1]) << 16 | static_cast<uint32_t>(p[2]) << 8 |
            p[3];
   }
-  void store(uint64_t bits) {
-    if (size_ + 8 > bytes_.size()) bytes_.resize(2 * bytes_.size() + 4096);
+  static void write64(uint8_t* p, uint64_t bits) {
     uint8_t bytes[8];  // of their own, so that they become one store
     for (int i = 0; i < 8; ++i) bytes[i] = static_cast<uint8_t>(bits >> (56 - 8 * i));
-    std::memcpy(bytes_.data() + size_, bytes, 8);
+    std::memcpy(p, bytes, 8);
+  }
+  void store(uint64_t bits) {
+    if (size_ + 8 > bytes_.size()) bytes_.resize(2 * bytes_.size() + 4096);
+    write64(bytes_.data() + size_, bits);
     size_ += 8;
   }
 

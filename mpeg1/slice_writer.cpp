@@ -1,9 +1,13 @@
 #include "mpeg1/slice_writer.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "mpeg1/motion_vector.h"
 #include "mpeg1/vlc_tables.h"
+
+// What writes blocks: a call would keep the bits in memory.
+#define PAC_INLINE inline __attribute__((always_inline))
 
 namespace pac::mpeg1 {
 namespace {
@@ -128,41 +132,42 @@ class BandWriter {
   }
 
   // first_is_special: the block is not intra, so that it has a level.
-  void write_tokens(const Token* tokens, int count, bool first_is_special) {
+  PAC_INLINE static void write_tokens(FastBitWriter::Loan& bits, const Token* tokens, int count,
+                                      bool first_is_special) {
     int i = 0;
-    if (first_is_special && token_run(tokens[0]) == 0 && (token_level(tokens[0]) == 1 || token_level(tokens[0]) == -1))
-      bits_.put(token_level(tokens[i++]) < 0 ? 3 : 2, 2);  // dct_coeff_first
+    if (first_is_special && (tokens[0] == make_token(0, 1) || tokens[0] == make_token(0, -1)))
+      bits.put(token_level(tokens[i++]) < 0 ? 3 : 2, 2);  // dct_coeff_first
     for (; i < count; ++i) {
       const int run = token_run(tokens[i]), level = token_level(tokens[i]);
-      if (run < kTokenRuns && level > -kTokenLevels && level < kTokenLevels) {
+      if (run < kTokenRuns && level > -kTokenLevels && level < kTokenLevels) [[likely]] {
         const uint32_t entry = kWriting.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)];
-        bits_.put(entry >> 5, static_cast<int>(entry & 31));
+        bits.put(entry >> 5, static_cast<int>(entry & 31));
       } else {
-        write_escape(run, level);
+        write_escape(bits, run, level);
       }
     }
-    put(kEndOfBlock);
+    bits.put(kEndOfBlock.bits, kEndOfBlock.length);
   }
-  void write_escape(int run, int level) {
-    bits_.put(static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run), 12);
+  PAC_INLINE static void write_escape(FastBitWriter::Loan& bits, int run, int level) {
+    bits.put(static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run), 12);
     if (level > 127)
-      bits_.put(static_cast<uint32_t>(level), 16);
+      bits.put(static_cast<uint32_t>(level), 16);
     else if (level < -127)
-      bits_.put(0x8000 | static_cast<uint32_t>(level + 256), 16);
+      bits.put(0x8000 | static_cast<uint32_t>(level + 256), 16);
     else
-      bits_.put(static_cast<uint32_t>(level) & 255, 8);
+      bits.put(static_cast<uint32_t>(level) & 255, 8);
   }
 
-  void write_dc(int block, int dc) {
+  PAC_INLINE void write_dc(FastBitWriter::Loan& bits, int block, int dc) {
     int& prediction = predictions_.dc[block < 4 ? 0 : block - 3];
     const int differential = dc - prediction;
     prediction = dc;
     const int magnitude = differential < 0 ? -differential : differential;
-    int size = 0;
-    while (magnitude >> size != 0) ++size;
-    put(block < 4 ? kDcSizeLuminance[static_cast<size_t>(size)] : kDcSizeChrominance[static_cast<size_t>(size)]);
-    const int bits = differential < 0 ? differential + (1 << size) - 1 : differential;
-    bits_.put(static_cast<uint32_t>(bits), size);
+    const int size = 32 - std::countl_zero(static_cast<uint32_t>(magnitude));
+    const Code& code =
+        block < 4 ? kDcSizeLuminance[static_cast<size_t>(size)] : kDcSizeChrominance[static_cast<size_t>(size)];
+    const int rest = differential < 0 ? differential + (1 << size) - 1 : differential;
+    bits.put(static_cast<uint32_t>(code.bits) << size | static_cast<uint32_t>(rest), code.length + size);
   }
 
   // The last macroblock of a slice without coefficients may be short.
@@ -200,15 +205,23 @@ class BandWriter {
     predictions_.vector = macroblock.vector;
     if (!is_intra) reset_dc();
     if (!is_intra && macroblock.pattern != 0) put(kPatternCodes[macroblock.pattern]);
+    if (has_coefficients(macroblock)) write_blocks(macroblock);
+  }
+
+  void write_blocks(const Macroblock& macroblock) {
+    constexpr size_t kMostBits = 6 * (64 * 28 + 16 + 2);  // escapes, DC and end_of_block
+    const bool is_intra = macroblock.kind == MacroblockKind::intra;
     const Token* tokens = band_.tokens.data() + macroblock.first_token;
+    FastBitWriter::Loan bits = bits_.lend(kMostBits);
     for (int block = 0; block < 6; ++block) {
       if (is_intra)
-        write_dc(block, macroblock.dc[block]);
+        write_dc(bits, block, macroblock.dc[block]);
       else if ((macroblock.pattern & 32 >> block) == 0)
         continue;
-      write_tokens(tokens, macroblock.counts[block], !is_intra);
+      write_tokens(bits, tokens, macroblock.counts[block], !is_intra);
       tokens += macroblock.counts[block];
     }
+    bits_.take_back(bits);
   }
 
   const PictureToWrite& picture_;
