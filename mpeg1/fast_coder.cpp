@@ -74,30 +74,20 @@ MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
 
 // The target holds the prediction.
 FastCoder::Outcome FastCoder::code_errors() {
-  const Planes& s = task_.source;
-  const Planes& t = task_.target;
-  const int least = task_.residual.non_intra->least_weight[quantizer()];
-  uint32_t reaching = 0;
-  for (const int half : {0, 1})
-    reaching |= motion_.fdct_residual_reaching(source() + 8 * half * s.stride[0], s.stride[0],
-                                               t.at(0, column_, row_) + 8 * half * t.stride[0], t.stride[0], 2, least,
-                                               dct_ + 128 * half)
-                << (2 * half);
-  for (const int plane : {1, 2})
-    reaching |= motion_.fdct_residual_reaching(s.at(plane, column_, row_), s.stride[plane], t.at(plane, column_, row_),
-                                               t.stride[plane], 1, least, dct_ + 64 * (3 + plane))
-                << (3 + plane);
+  const QuantizerSet& set = *task_.residual.non_intra;
+  const uint32_t reaching = motion_.fdct_macroblock(
+      predicted_samples(task_.source, column_, row_, task_.target, column_, row_), set.least_weight[quantizer()], dct_);
   coded_.n_blocks = coded_.n_tokens = coded_.bits = 0;
   coded_.gain = 0;
   coded_.pattern = 0;
   std::memset(coded_.counts, 0, sizeof coded_.counts);
-  for (; reaching != 0; reaching &= reaching - 1) {
-    const int block = std::countr_zero(reaching);
-    alignas(64) int16_t levels[64];
-    uint64_t nonzero = 0;
-    task_.residual.kernels->block.quantize(dct_ + 64 * block, task_.residual.non_intra->divide[quantizer()], 1, levels,
-                                           &nonzero);
-    if (!choose_levels(block, levels, nonzero)) return Outcome::too_large;
+  for (int block = 0; block < kBlocks; block += 2) {
+    if ((reaching >> block & 3) == 0) continue;
+    alignas(64) int16_t levels[128];
+    uint64_t nonzero[2];
+    task_.residual.kernels->block.quantize(dct_ + 64 * block, set.divide[quantizer()], 2, levels, nonzero);
+    for (const int i : {0, 1})
+      if (nonzero[i] != 0 && !choose_levels(block + i, levels + 64 * i, nonzero[i])) return Outcome::too_large;
   }
   if (coded_.pattern != 0 && !is_worth_coding()) coded_.pattern = 0;
   if (coded_.pattern != 0) reconstruct();

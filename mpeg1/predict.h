@@ -35,6 +35,19 @@ struct alignas(64) MacroblockSamples {
   Planes planes() { return {{y, cb, cr}, {16, 8, 8}, 16, 16}; }
 };
 
+// The macroblock of `source` at (column, row), its prediction in that of `prediction` at another place.
+inline PredictedSamples predicted_samples(const Planes& source, int column, int row, const Planes& prediction,
+                                          int prediction_column, int prediction_row) {
+  PredictedSamples samples;
+  for (const int plane : {0, 1, 2}) {
+    samples.source[plane] = source.at(plane, column, row);
+    samples.source_stride[plane] = source.stride[plane];
+    samples.prediction[plane] = prediction.at(plane, prediction_column, prediction_row);
+    samples.prediction_stride[plane] = prediction.stride[plane];
+  }
+  return samples;
+}
+
 // Predicts the macroblock at (column, row) from `reference` into that of `target`, whose own macroblock is at
 // (target_column, target_row). Vectors may lead anywhere: samples outside the picture repeat its edge.
 void predict_macroblock(const MotionKernels& kernels, const Planes& reference, int column, int row, MotionVector vector,

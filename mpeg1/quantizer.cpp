@@ -7,7 +7,7 @@
 namespace pac::mpeg1 {
 namespace {
 
-constexpr uint32_t kMaxCoefficient = 16384 + 8192;  // fdct_residual's, with rounding up by half a step
+constexpr uint32_t kMaxCoefficient = 16384 + 8192;  // fdct_macroblock's, with rounding up by half a step
 
 // With 2^s <= d < 2^(s+1), s >= 1: reciprocal m = ceil(2^(16+s) / d) is at most 2^16, and (n * m) >> (16 + s) == n / d
 // for n < 2^15, because n * (m * d - 2^(16+s)) < 2^(16+s). d = 2^s would need m = 2^16: half of it, one shift less.

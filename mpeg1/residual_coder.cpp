@@ -11,17 +11,7 @@ namespace pac::mpeg1 {
 namespace {
 
 alignas(64) constexpr uint8_t kZeros[16] = {};
-
-void transform(const MotionKernels& kernels, const Planes& source, int column, int row, const Planes& prediction,
-               int16_t* dct) {
-  for (int half = 0; half < 2; ++half)
-    kernels.fdct_residual(source.at(0, column, row) + 8 * half * source.stride[0], source.stride[0],
-                          prediction.data[0] + 8 * half * prediction.stride[0], prediction.stride[0], 2,
-                          dct + 128 * half);
-  for (const int plane : {1, 2})
-    kernels.fdct_residual(source.at(plane, column, row), source.stride[plane], prediction.data[plane],
-                          prediction.stride[plane], 1, dct + 64 * (3 + plane));
-}
+constexpr uint32_t kAllBlocks = (1u << kBlocks) - 1;
 
 int largest_level(const Attempt& attempt, int first_position) {
   int largest = 0;
@@ -33,14 +23,25 @@ int largest_level(const Attempt& attempt, int first_position) {
   return largest;
 }
 
-// Divides at the attempt's quantizer, or the next one at which every level has a code.
-void divide(const BlockKernels& kernels, const QuantizerSet& set, int first_position, Attempt& attempt) {
+// Divides the blocks of `reaching` at the attempt's quantizer, or the next one at which every level has a code. The
+// others have no levels.
+void divide(const BlockKernels& kernels, const QuantizerSet& set, int first_position, uint32_t reaching,
+            Attempt& attempt) {
   for (;; ++attempt.quantizer) {
-    kernels.quantize(attempt.dct, set.divide[attempt.quantizer], kBlocks, attempt.levels, attempt.nonzero);
+    for (int block = 0; block < kBlocks; block += 2) {
+      attempt.nonzero[block] = attempt.nonzero[block + 1] = 0;
+      if ((reaching >> block & 3) == 0) continue;
+      kernels.quantize(attempt.dct + 64 * block, set.divide[attempt.quantizer], 2, attempt.levels + 64 * block,
+                       attempt.nonzero + block);
+    }
     if (!set.may_overflow[attempt.quantizer] || largest_level(attempt, first_position) <= kMaxLevel) return;
     if (attempt.quantizer == 31) break;
   }
-  for (int16_t& level : attempt.levels) level = static_cast<int16_t>(std::clamp<int>(level, -kMaxLevel, kMaxLevel));
+  for (int block = 0; block < kBlocks; ++block)
+    for (uint64_t mask = attempt.nonzero[block]; mask != 0; mask &= mask - 1) {
+      int16_t& level = attempt.levels[64 * block + std::countr_zero(mask)];
+      level = static_cast<int16_t>(std::clamp<int>(level, -kMaxLevel, kMaxLevel));
+    }
 }
 
 // Chooses the levels of one block.
@@ -108,8 +109,8 @@ void attempt_intra(const ResidualTask& task, const Planes& source, int column, i
   attempt.bits = 0;
   const Planes nothing = {
       {const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros)}, {0, 0, 0}, 16, 16};
-  transform(task.kernels->motion, source, column, row, nothing, attempt.dct);
-  divide(task.kernels->block, *task.intra, 1, attempt);
+  task.kernels->motion.fdct_macroblock(predicted_samples(source, column, row, nothing, 0, 0), 1, attempt.dct);
+  divide(task.kernels->block, *task.intra, 1, kAllBlocks, attempt);
   BlockToQuantize block;
   block.weight = task.intra->weight[attempt.quantizer];
   block.lambda = attempt.lambda;
@@ -133,8 +134,10 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
   attempt.pattern = 0;
   attempt.distortion = 0;
   attempt.bits = 0;
-  transform(task.kernels->motion, source, column, row, attempt.prediction.planes(), attempt.dct);
-  divide(task.kernels->block, *task.non_intra, 0, attempt);
+  const uint32_t reaching =
+      task.kernels->motion.fdct_macroblock(predicted_samples(source, column, row, attempt.prediction.planes(), 0, 0),
+                                           task.non_intra->least_weight[attempt.quantizer], attempt.dct);
+  divide(task.kernels->block, *task.non_intra, 0, reaching, attempt);
   BlockToQuantize block;
   block.weight = task.non_intra->weight[attempt.quantizer];
   block.lambda = attempt.lambda;

@@ -1,8 +1,10 @@
 // The motion kernels of every instruction set equal the scalar ones, and the transforms are accurate.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "tests/support/kernel_check.h"
 
@@ -77,29 +79,32 @@ TEST_CASE("predictions: every instruction set gives the scalar bits and reads no
       }
 }
 
-TEST_CASE("fdct_residual: every instruction set gives the scalar bits") {
+TEST_CASE("fdct_macroblock: every instruction set gives the scalar bits and the blocks that reach a threshold") {
   KernelCheck check(8192);
   for (const Pattern pattern : kPatterns)
     for (uint64_t seed = 0; seed < 64; ++seed) {
       CAPTURE(pattern_name(pattern));
-      const size_t n = 1 + seed % 3, stride = 8 * n + seed % 2;
-      const auto step = static_cast<ptrdiff_t>(stride);
-      const uint8_t* s = check.input<uint8_t>(0, 7 * stride + 8 * n, Guard::after, seed % 64, pattern, 0, 255, seed);
+      // Y, Cb and Cr one after the other, each with a stride of its own.
+      const size_t strides[3] = {16 + seed % 2, 8 + seed % 3, 8 + seed % 5};
+      const size_t sizes[3] = {15 * strides[0] + 16, 7 * strides[1] + 8, 7 * strides[2] + 8};
+      const size_t total = sizes[0] + sizes[1] + sizes[2];
+      const uint8_t* s = check.input<uint8_t>(0, total, Guard::after, seed % 64, pattern, 0, 255, seed);
       const Pattern other = seed % 3 == 0 ? Pattern::zeros : seed % 3 == 1 ? Pattern::random : Pattern::highest;
-      const uint8_t* p = check.input<uint8_t>(1, 7 * stride + 8 * n, Guard::after, 0, other, 0, 255, seed + 9);
-      check.compare<int16_t>(64 * n, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
-        table.motion.fdct_residual(s, step, p, step, n, out);
-      });
-      for (const int threshold : {1, 48, 600, 16384}) {
-        uint32_t expected = 0;
-        bool is_first = true;  // the scalar table comes first
-        check.compare<int16_t>(64 * n, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
-          const uint32_t reaching = table.motion.fdct_residual_reaching(s, step, p, step, n, threshold, out);
-          if (is_first) expected = reaching;
-          is_first = false;
-          CHECK(reaching == expected);
-        });
+      const uint8_t* p = check.input<uint8_t>(1, total, Guard::after, 0, other, 0, 255, seed + 9);
+      PredictedSamples samples;
+      for (size_t plane = 0, at = 0; plane < 3; at += sizes[plane++]) {
+        samples.source[plane] = s + at;
+        samples.prediction[plane] = p + at;
+        samples.source_stride[plane] = samples.prediction_stride[plane] = static_cast<ptrdiff_t>(strides[plane]);
       }
+      for (const int threshold : {1, 48, 600, 16384})
+        check.compare<int16_t>(64 * 6, Guard::after, seed * 2 % 64, [&](const Kernels& table, int16_t* out) {
+          const uint32_t reaching = table.motion.fdct_macroblock(samples, threshold, out);
+          for (size_t block = 0; block < 6; ++block) {
+            const auto reaches = [&](int16_t c) { return std::abs(c) >= threshold; };
+            CHECK((reaching >> block & 1) == (std::any_of(out + 64 * block, out + 64 * block + 64, reaches) ? 1 : 0));
+          }
+        });
     }
 }
 

@@ -110,11 +110,11 @@ __m256i join(__m128i first, __m128i second) {
   return _mm256_inserti128_si256(_mm256_castsi128_si256(first), second, 1);
 }
 // 16 samples' differences: the left block's in the low half.
-__m256i difference_row(const uint8_t* source, const uint8_t* prediction) {
-  return _mm256_sub_epi16(_mm256_cvtepu8_epi16(load(source)), _mm256_cvtepu8_epi16(load(prediction)));
+__m256i difference_row(__m128i source, __m128i prediction) {
+  return _mm256_sub_epi16(_mm256_cvtepu8_epi16(source), _mm256_cvtepu8_epi16(prediction));
 }
-__m256i difference_row_8(const uint8_t* source, const uint8_t* prediction) {
-  return join(_mm_sub_epi16(widen(load_8(source)), widen(load_8(prediction))), _mm_setzero_si128());
+__m256i difference_row(const uint8_t* source, const uint8_t* prediction) {
+  return difference_row(load(source), load(prediction));
 }
 
 uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
@@ -136,43 +136,34 @@ uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* p
   return total;
 }
 
-// Blocks i and i + 1, or i alone.
-PAC_INLINE Block transformed_errors(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                                    ptrdiff_t prediction_stride, bool is_pair, int16_t* coefficients) {
-  Block block;
-  for (int y = 0; y < 8; ++y) {
-    const uint8_t* s = source + y * source_stride;
-    const uint8_t* p = prediction + y * prediction_stride;
-    block.v[y] = is_pair ? difference_row(s, p) : difference_row_8(s, p);
-  }
+// Transforms both blocks, stores them one after the other. Bit 0 and 1: which of them has a coefficient above `below`.
+PAC_INLINE uint32_t transform_pair(Block& block, __m256i below, int16_t* coefficients) {
   fdct_2d(block);
-  for (int y = 0; y < 8; ++y) store(coefficients + 8 * y, _mm256_castsi256_si128(block.v[y]));
-  if (is_pair)
-    for (int y = 0; y < 8; ++y) store(coefficients + 64 + 8 * y, _mm256_extracti128_si256(block.v[y], 1));
-  return block;
+  for (int y = 0; y < 8; ++y) {
+    store(coefficients + 8 * y, _mm256_castsi256_si128(block.v[y]));
+    store(coefficients + 64 + 8 * y, _mm256_extracti128_si256(block.v[y], 1));
+  }
+  const auto above = static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpgt_epi16(largest_magnitudes(block), below)));
+  return ((above & 0xFFFF) != 0 ? 1u : 0u) | (above >> 16 != 0 ? 2u : 0u);
 }
 
-void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                   ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients) {
-  for (size_t i = 0; i < n_blocks; i += 2)
-    transformed_errors(source + 8 * i, source_stride, prediction + 8 * i, prediction_stride, i + 1 < n_blocks,
-                       coefficients + 64 * i);
-}
-
-// The high half of a single block is transformed zeros: it never reaches anything.
-uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t* coefficients) {
   const __m256i below = _mm256_set1_epi16(static_cast<int16_t>(threshold - 1));
   uint32_t reaching = 0;
-  for (size_t i = 0; i < n_blocks; i += 2) {
-    const Block block = transformed_errors(source + 8 * i, source_stride, prediction + 8 * i, prediction_stride,
-                                           i + 1 < n_blocks, coefficients + 64 * i);
-    const auto above =
-        static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpgt_epi16(largest_magnitudes(block), below)));
-    const uint32_t pair = ((above & 0xFFFF) != 0 ? 1u : 0u) | (above >> 16 != 0 ? 2u : 0u);
-    reaching |= pair << i;
+  Block block;
+  for (int half = 0; half < 2; ++half) {
+    const uint8_t* source = samples.source[0] + 8 * half * samples.source_stride[0];
+    const uint8_t* prediction = samples.prediction[0] + 8 * half * samples.prediction_stride[0];
+    for (int y = 0; y < 8; ++y)
+      block.v[y] = difference_row(source + y * samples.source_stride[0], prediction + y * samples.prediction_stride[0]);
+    reaching |= transform_pair(block, below, coefficients + 128 * half) << (2 * half);
   }
-  return reaching;
+  const TwoReferences source{samples.source[1], samples.source[2]};
+  const TwoReferences prediction{samples.prediction[1], samples.prediction[2]};
+  for (int y = 0; y < 8; ++y)
+    block.v[y] = difference_row(source.row(y * samples.source_stride[1], y * samples.source_stride[2]),
+                                prediction.row(y * samples.prediction_stride[1], y * samples.prediction_stride[2]));
+  return reaching | transform_pair(block, below, coefficients + 256) << 4;
 }
 
 template <bool kAdd>
@@ -200,8 +191,7 @@ void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples,
 void fill_motion_avx2(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
-  table.fdct_residual = fdct_residual;
-  table.fdct_residual_reaching = fdct_residual_reaching;
+  table.fdct_macroblock = fdct_macroblock;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }

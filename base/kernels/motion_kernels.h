@@ -16,6 +16,14 @@ namespace pac {
 // Index of the tables below: h + 2 * v. Reads width + h samples of height + v rows of the reference, no others.
 constexpr int kHalfPelKinds = 4;
 
+// The first samples of a macroblock's planes Y, Cb, Cr, and how far apart the rows are.
+struct PredictedSamples {
+  const uint8_t* source[3];
+  ptrdiff_t source_stride[3];
+  const uint8_t* prediction[3];
+  ptrdiff_t prediction_stride[3];
+};
+
 struct MotionKernels {
   // Sum of |source - reference| over 16x16 samples, any alignment.
   uint32_t (*sad16)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
@@ -51,17 +59,11 @@ struct MotionKernels {
   void (*average)(uint8_t* prediction, ptrdiff_t prediction_stride, const uint8_t* other, ptrdiff_t other_stride,
                   int width, int height);
 
-  // Forward DCT of source - prediction of `n_blocks` horizontally adjacent 8x8 blocks (block i at + 8 * i of both).
-  // Output as fdct_islow: 8 times the DCT of 11172-2's definition, natural order, |c| <= 16384, block i at
-  // coefficients + 64 * i.
-  void (*fdct_residual)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                        ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients);
-
-  // fdct_residual() of up to 32 blocks that also tells which of them have a coefficient with |c| >= threshold
-  // (1..32767): bit i for block i.
-  uint32_t (*fdct_residual_reaching)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                                     ptrdiff_t prediction_stride, size_t n_blocks, int threshold,
-                                     int16_t* coefficients);
+  // Forward DCT of source - prediction of a macroblock's six 8x8 blocks: those of 16x16 samples of luma in raster
+  // order, Cb, Cr. Output as fdct_islow: 8 times the DCT of 11172-2's definition, natural order, |c| <= 16384, block i
+  // at coefficients + 64 * i. Returns which blocks have a coefficient with |c| >= threshold (1..32767): bit i for
+  // block i.
+  uint32_t (*fdct_macroblock)(const PredictedSamples& samples, int threshold, int16_t* coefficients);
 
   // Inverse DCT of `n_blocks` blocks of coefficients (natural order, -2048..2047, block i at coefficients + 64 * i),
   // added to the samples at samples[i] (rows strides[i] apart) and clamped to 0..255. Three bits of fraction stay

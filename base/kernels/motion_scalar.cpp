@@ -181,31 +181,34 @@ void fdct_1d(int (&x)[8], int shift) {
   x[3] = round_shift(difference16 * (k3_072 - k2_562) - difference25 * k2_562 + odd3, shift);
 }
 
-void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                   ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients) {
-  for (size_t block = 0; block < n_blocks; ++block, source += 8, prediction += 8, coefficients += 64) {
-    int work[64];
-    for (int row = 0; row < 8; ++row) {
-      int x[8];
-      for (int i = 0; i < 8; ++i) x[i] = source[row * source_stride + i] - prediction[row * prediction_stride + i];
-      fdct_1d(x, kConstBits - kForwardPassBits);
-      for (int i = 0; i < 8; ++i) work[8 * row + i] = x[i];
-    }
-    for (int column = 0; column < 8; ++column) {
-      int x[8];
-      for (int i = 0; i < 8; ++i) x[i] = work[8 * i + column];
-      fdct_1d(x, kConstBits + kForwardPassBits);
-      for (int i = 0; i < 8; ++i) coefficients[8 * i + column] = static_cast<int16_t>(x[i]);
-    }
+void fdct_block(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction, ptrdiff_t prediction_stride,
+                int16_t* coefficients) {
+  int work[64];
+  for (int row = 0; row < 8; ++row) {
+    int x[8];
+    for (int i = 0; i < 8; ++i) x[i] = source[row * source_stride + i] - prediction[row * prediction_stride + i];
+    fdct_1d(x, kConstBits - kForwardPassBits);
+    for (int i = 0; i < 8; ++i) work[8 * row + i] = x[i];
+  }
+  for (int column = 0; column < 8; ++column) {
+    int x[8];
+    for (int i = 0; i < 8; ++i) x[i] = work[8 * i + column];
+    fdct_1d(x, kConstBits + kForwardPassBits);
+    for (int i = 0; i < 8; ++i) coefficients[8 * i + column] = static_cast<int16_t>(x[i]);
   }
 }
 
-uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
-  fdct_residual(source, source_stride, prediction, prediction_stride, n_blocks, coefficients);
+uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t* coefficients) {
   uint32_t reaching = 0;
-  for (size_t i = 0; i < 64 * n_blocks; ++i)
-    if (magnitude(coefficients[i]) >= threshold) reaching |= uint32_t{1} << (i / 64);
+  for (int block = 0; block < 6; ++block, coefficients += 64) {
+    const int plane = block < 4 ? 0 : block - 3;
+    const ptrdiff_t x = block < 4 ? block % 2 * 8 : 0, y = block < 4 ? block / 2 * 8 : 0;
+    const ptrdiff_t source_stride = samples.source_stride[plane], prediction_stride = samples.prediction_stride[plane];
+    fdct_block(samples.source[plane] + y * source_stride + x, source_stride,
+               samples.prediction[plane] + y * prediction_stride + x, prediction_stride, coefficients);
+    for (int i = 0; i < 64; ++i)
+      if (magnitude(coefficients[i]) >= threshold) reaching |= uint32_t{1} << block;
+  }
   return reaching;
 }
 
@@ -281,8 +284,7 @@ void fill_motion_scalar(MotionKernels& table) {
   table.predict8_pair[0] = predict8_pair<0>, table.predict8_pair[1] = predict8_pair<1>;
   table.predict8_pair[2] = predict8_pair<2>, table.predict8_pair[3] = predict8_pair<3>;
   table.average = average;
-  table.fdct_residual = fdct_residual;
-  table.fdct_residual_reaching = fdct_residual_reaching;
+  table.fdct_macroblock = fdct_macroblock;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
   table.idct_dc_add = idct_dc_add;

@@ -125,27 +125,27 @@ uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* p
   return total;
 }
 
-void fdct_residual(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                   ptrdiff_t prediction_stride, size_t n_blocks, int16_t* coefficients) {
-  for (size_t i = 0; i < n_blocks; ++i) {
-    Block block;
-    for (int y = 0; y < 8; ++y)
-      block.v[y] = difference_row(source + y * source_stride + 8 * i, prediction + y * prediction_stride + 8 * i);
-    fdct_2d(block);
-    for (int y = 0; y < 8; ++y) store(coefficients + 64 * i + 8 * static_cast<size_t>(y), block.v[y]);
+// The transformed errors of block `block` of a macroblock.
+PAC_INLINE Block transformed_errors(const PredictedSamples& samples, int block) {
+  const int plane = block < 4 ? 0 : block - 3;
+  const ptrdiff_t x = block < 4 ? block % 2 * 8 : 0, y = block < 4 ? block / 2 * 8 : 0;
+  const uint8_t* source = samples.source[plane] + y * samples.source_stride[plane] + x;
+  const uint8_t* prediction = samples.prediction[plane] + y * samples.prediction_stride[plane] + x;
+  Block errors;
+  for (Lanes& row : errors.v) {
+    row = difference_row(source, prediction);
+    source += samples.source_stride[plane], prediction += samples.prediction_stride[plane];
   }
+  fdct_2d(errors);
+  return errors;
 }
 
-uint32_t fdct_residual_reaching(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
-                                ptrdiff_t prediction_stride, size_t n_blocks, int threshold, int16_t* coefficients) {
+uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t* coefficients) {
   const __m128i below = _mm_set1_epi16(static_cast<int16_t>(threshold - 1));
   uint32_t reaching = 0;
-  for (size_t i = 0; i < n_blocks; ++i) {
-    Block block;
-    for (int y = 0; y < 8; ++y)
-      block.v[y] = difference_row(source + y * source_stride + 8 * i, prediction + y * prediction_stride + 8 * i);
-    fdct_2d(block);
-    for (int y = 0; y < 8; ++y) store(coefficients + 64 * i + 8 * static_cast<size_t>(y), block.v[y]);
+  for (int i = 0; i < 6; ++i) {
+    const Block block = transformed_errors(samples, i);
+    for (int y = 0; y < 8; ++y) store(coefficients + 64 * i + 8 * y, block.v[y]);
     const int above = _mm_movemask_epi8(_mm_cmpgt_epi16(largest_magnitudes(block), below));
     reaching |= (above != 0 ? uint32_t{1} : 0) << i;
   }
@@ -171,8 +171,7 @@ void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples,
 void fill_motion_sse41(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
-  table.fdct_residual = fdct_residual;
-  table.fdct_residual_reaching = fdct_residual_reaching;
+  table.fdct_macroblock = fdct_macroblock;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }
