@@ -15,9 +15,22 @@ constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pa
 
 }  // namespace
 
+// A cache line holds four macroblocks' rows: those of the next four, of the picture and of its reference, are asked for
+// while these are worked on, as no hardware sees sixteen rows coming.
+void FastCoder::prefetch_luma() const {
+  constexpr int kLine = 64;
+  const uint8_t* s = source() + kLine;
+  const uint8_t* r = task_.reference.at(0, column_, row_) + kLine;
+  for (int y = 0; y < 16; ++y, s += task_.source.stride[0], r += task_.reference.stride[0]) {
+    __builtin_prefetch(s);
+    __builtin_prefetch(r);
+  }
+}
+
 FastCoder::Outcome FastCoder::code(int column, int row) {
   column_ = column;
   row_ = row;
+  if (column % 4 == 0 && column + 4 < task_.columns) prefetch_luma();
   uint32_t quarters[4];
   motion_.sad16_quarters(source(), task_.source.stride[0], task_.reference.at(0, column_, row_),
                          task_.reference.stride[0], quarters);
@@ -77,7 +90,8 @@ FastCoder::Outcome FastCoder::code_errors() {
   const QuantizerSet& set = *task_.residual.non_intra;
   const uint32_t reaching = motion_.fdct_macroblock(
       predicted_samples(task_.source, column_, row_, task_.target, column_, row_), set.least_weight[quantizer()], dct_);
-  coded_.n_blocks = coded_.n_tokens = coded_.bits = 0;
+  coded_.n_flat = coded_.n_full = 0;
+  coded_.n_tokens = coded_.bits = 0;
   coded_.gain = 0;
   coded_.pattern = 0;
   std::memset(coded_.counts, 0, sizeof coded_.counts);
@@ -102,43 +116,50 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
   const uint16_t* weight = task_.residual.non_intra->weight[quantizer()];
   const int64_t bit = lambda();
   Token* tokens = coded_.tokens + coded_.n_tokens;
-  int16_t* coefficients = coded_.coefficients + 64 * coded_.n_blocks;
-  uint8_t places[64] = {};  // of the tokens, natural order
+  int16_t* coefficients = coded_.coefficients + 64 * coded_.n_full;
   clear_block(coefficients);
   struct Prefix {
     int count = 0, bits = kEndOfBlock.length + kPatternBits;
-    int64_t gain = 0, saved = 0;  // gain less what the bits are worth
+    int64_t saved = 0;  // distortion that the levels take away, less what the bits are worth
   } all, best;
+  all.saved = -bit * all.bits;
   int last = -1;
   for (; nonzero != 0; nonzero &= nonzero - 1) {
     const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
-    const int level = levels[position], magnitude = level < 0 ? -level : level;
+    const int level = levels[position], sign = level >> 31, magnitude = (level ^ sign) - sign;
     if (magnitude > kMaxLevel) return false;
     const int c = dct[natural] < 0 ? -dct[natural] : dct[natural];
     const int value = reconstruct_non_intra(magnitude, weight[position]);
-    if (value == 0) continue;                                       // decoders disagree about it
-    const int64_t gain = int64_t{8 * value} * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
+    if (value == 0) continue;                          // decoders disagree about it
+    const int gain = 8 * value * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
     const int run = position - last - 1;
-    const bool is_short = all.count == 0 && run == 0 && magnitude == 1;  // dct_coeff_first
+    const bool is_short = position == 0 && magnitude == 1;  // dct_coeff_first
     const int bits = run_level_bits(run, magnitude) - (is_short ? 1 : 0);
-    if (magnitude == 1 && gain <= bit * bits) continue;
-    all.gain += gain;
+    const int64_t saved = gain - bit * bits;
+    if (magnitude == 1 && saved <= 0) continue;
+    all.saved += saved;
     all.bits += bits;
-    all.saved = all.gain - bit * all.bits;
-    places[all.count] = static_cast<uint8_t>(natural);
     tokens[all.count++] = make_token(run, level);
-    coefficients[natural] = static_cast<int16_t>(level < 0 ? -value : value);
+    coefficients[natural] = static_cast<int16_t>((value ^ sign) - sign);
     last = position;
     if (all.saved > best.saved) best = all;
   }
   if (best.count == 0) return true;
-  for (int i = best.count; i < all.count; ++i) coefficients[places[i]] = 0;
-  coded_.is_flat[coded_.n_blocks] = best.count == 1 && places[0] == 0;
-  coded_.order[coded_.n_blocks++] = static_cast<uint8_t>(block);
+  if (best.count != all.count)
+    for (int i = 0, position = -1; i < all.count; ++i) {
+      position += token_run(tokens[i]) + 1;
+      if (i >= best.count) coefficients[kNaturalFromZigzag[position]] = 0;
+    }
+  if (best.count == 1 && token_run(tokens[0]) == 0) {
+    coded_.flat[coded_.n_flat] = coefficients[0];
+    coded_.flat_blocks[coded_.n_flat++] = static_cast<uint8_t>(block);
+  } else {
+    coded_.full_blocks[coded_.n_full++] = static_cast<uint8_t>(block);
+  }
   coded_.n_tokens += best.count;
   coded_.counts[block] = static_cast<uint8_t>(best.count);
   coded_.bits += best.bits - kPatternBits;
-  coded_.gain += best.gain;
+  coded_.gain += best.saved + bit * best.bits;
   coded_.pattern = static_cast<uint8_t>(coded_.pattern | 32 >> block);
   return true;
 }
@@ -153,23 +174,21 @@ bool FastCoder::is_worth_coding() const {
 
 void FastCoder::reconstruct() const {
   const Planes& t = task_.target;
-  alignas(64) int16_t coefficients[64 * kBlocks];
+  const auto samples_of = [&](int block) {
+    uint8_t* at = t.at(block < 4 ? 0 : block - 3, column_, row_);
+    return block < 4 ? at + (block & 1) * 8 + (block >> 1) * 8 * t.stride[0] : at;
+  };
+  const auto stride_of = [&](int block) { return t.stride[block < 4 ? 0 : block - 3]; };
+  for (size_t i = 0; i < coded_.n_flat; ++i)
+    motion_.idct_dc_add(coded_.flat[i], samples_of(coded_.flat_blocks[i]), stride_of(coded_.flat_blocks[i]));
+  if (coded_.n_full == 0) return;
   uint8_t* samples[kBlocks];
   ptrdiff_t strides[kBlocks];
-  size_t n = 0;
-  for (int i = 0; i < coded_.n_blocks; ++i) {
-    const int block = coded_.order[i], plane = block < 4 ? 0 : block - 3;
-    uint8_t* at = t.at(plane, column_, row_);
-    if (block < 4) at += (block & 1) * 8 + (block >> 1) * 8 * t.stride[0];
-    if (coded_.is_flat[i]) {
-      motion_.idct_dc_add(coded_.coefficients[64 * i], at, t.stride[plane]);
-      continue;
-    }
-    std::memcpy(coefficients + 64 * n, coded_.coefficients + 64 * i, 64 * sizeof *coefficients);
-    samples[n] = at;
-    strides[n++] = t.stride[plane];
+  for (size_t i = 0; i < coded_.n_full; ++i) {
+    samples[i] = samples_of(coded_.full_blocks[i]);
+    strides[i] = stride_of(coded_.full_blocks[i]);
   }
-  if (n != 0) motion_.idct_add(coefficients, n, samples, strides);
+  motion_.idct_add(coded_.coefficients, coded_.n_full, samples, strides);
 }
 
 void FastCoder::describe() {

@@ -18,6 +18,7 @@ class FastCoder : private MacroblockPlace {
   MotionVector vector() const { return vector_; }
 
  private:
+  void prefetch_luma() const;
   bool stays(const uint32_t (&quarters)[4]) const;
   void keep_reference();
   MotionVector search(uint32_t still_sad, uint32_t& sad) const;
@@ -30,13 +31,15 @@ class FastCoder : private MacroblockPlace {
   MotionVector vector_;
   // Of the blocks with levels, in the order of the stream.
   struct Coded {
-    int n_blocks = 0, n_tokens = 0, bits = 0;
+    int n_tokens = 0, bits = 0;
     int64_t gain = 0;  // distortion that the levels take away
     uint8_t pattern = 0;
     uint8_t counts[kBlocks] = {};
-    uint8_t order[kBlocks] = {};
-    bool is_flat[kBlocks] = {};  // nothing but the first coefficient
     Token tokens[64 * kBlocks];
+    // Flat blocks have nothing but the first coefficient; the others' coefficients lie in their order.
+    size_t n_flat = 0, n_full = 0;
+    uint8_t flat_blocks[kBlocks] = {}, full_blocks[kBlocks] = {};
+    int16_t flat[kBlocks] = {};
     alignas(64) int16_t coefficients[64 * kBlocks];
   } coded_;
   alignas(64) int16_t dct_[64 * kBlocks];

@@ -6,29 +6,33 @@
 namespace pac::mpeg1 {
 namespace {
 
-constexpr int kMaxSteps = 24;
+constexpr int kMaxSteps = 24, kMaxTried = 32;
 constexpr uint32_t kPoorSad = 2000;  // 8 a sample: from which on the search looks further
 constexpr int kEnoughNeighbors = 2;  // that have the vector
 
 class FastSearch {
  public:
-  FastSearch(const SearchInput& input, const FastSearchOptions& options) : in_(input), options_(options) {}
+  FastSearch(const SearchInput& input, const FastSearchOptions& options)
+      : in_(input),
+        options_(options),
+        still_(input.reference.data[0] + 16 * input.row * input.reference.stride[0] + 16 * input.column),
+        stride_(input.reference.stride[0]) {}
 
   SearchResult run() {
     start_still();
-    const int agreeing = try_candidates();
+    try_candidates();
     if (best_.sad < options_.good_sad) return best_;
     if (best_.sad > kPoorSad) walk(8);
     const bool moved = walk(2);
-    if (options_.believes_neighbors && !moved && agreeing >= kEnoughNeighbors) return best_;
+    if (options_.believes_neighbors && !moved && is_of_neighbors()) return best_;
     refine();
     return best_;
   }
 
  private:
+  // Neither vector leaves the range of an f_code: their difference is in the table.
   uint32_t bits_cost(int x, int y) const {
-    const int dx = std::min(std::abs(x - in_.predicted.x_halfpel), kMaxDifference);
-    const int dy = std::min(std::abs(y - in_.predicted.y_halfpel), kMaxDifference);
+    const int dx = std::abs(x - in_.predicted.x_halfpel), dy = std::abs(y - in_.predicted.y_halfpel);
     return (static_cast<uint32_t>(in_.bits_of_difference[dx] + in_.bits_of_difference[dy]) * in_.lambda_q4) >> 4;
   }
 
@@ -39,27 +43,29 @@ class FastSearch {
 
   // A vector inside the range. True where it is the best so far.
   bool try_vector(int x, int y) {
-    const uint8_t* reference =
-        in_.reference.data[0] + (16 * in_.row + (y >> 1)) * in_.reference.stride[0] + 16 * in_.column + (x >> 1);
-    const uint32_t sad = in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)](in_.source, in_.source_stride, reference,
-                                                                        in_.reference.stride[0]);
+    const uint8_t* reference = still_ + (y >> 1) * stride_ + (x >> 1);
+    const uint32_t sad =
+        in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)](in_.source, in_.source_stride, reference, stride_);
     const uint32_t cost = sad + bits_cost(x, y);
     if (cost >= best_.cost) return false;
     best_ = {{static_cast<int16_t>(x), static_cast<int16_t>(y)}, sad, cost};
     return true;
   }
 
-  // Returns how many candidates are the best one.
-  int try_candidates() {
-    MotionVector tried[32] = {};
+  void try_candidates() {
+    MotionVector tried[kMaxTried] = {};
     int n_tried = 1;  // tried[0] is zero
-    for (int i = 0; i < in_.n_candidates; ++i) {
+    for (int i = 0; i < in_.n_candidates && n_tried < kMaxTried; ++i) {
       const MotionVector v = in_.range.clamp(in_.candidates[i]);
-      if (n_tried == 32 || std::find(tried, tried + n_tried, v) != tried + n_tried) continue;
+      bool is_new = true;
+      for (int k = 0; k < n_tried; ++k) is_new &= v != tried[k];
+      if (!is_new) continue;
       tried[n_tried++] = v;
       try_vector(v.x_halfpel, v.y_halfpel);
     }
-    return static_cast<int>(std::count(in_.candidates, in_.candidates + in_.n_candidates, best_.vector));
+  }
+  bool is_of_neighbors() const {
+    return std::count(in_.candidates, in_.candidates + in_.n_candidates, best_.vector) >= kEnoughNeighbors;
   }
 
   // Downhill in a diamond of that radius (half samples, even), without looking back to where it came from.
@@ -90,6 +96,8 @@ class FastSearch {
 
   const SearchInput& in_;
   const FastSearchOptions& options_;
+  const uint8_t* still_;  // where the zero vector leads
+  ptrdiff_t stride_;
   SearchResult best_;
 };
 

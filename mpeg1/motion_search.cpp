@@ -126,11 +126,6 @@ class Search {
 
 }  // namespace
 
-MotionVector VectorRange::clamp(MotionVector v) const {
-  return {static_cast<int16_t>(std::clamp(int{v.x_halfpel}, x_low, x_high)),
-          static_cast<int16_t>(std::clamp(int{v.y_halfpel}, y_low, y_high))};
-}
-
 VectorRange vector_range(const Planes& reference, int column, int row, int f_code) {
   const int reach = 16 << (f_code - 1);
   return {std::max(-32 * column, -reach), std::min(2 * (reference.width - 16 - 16 * column), reach - 2),

@@ -1,6 +1,7 @@
 // Motion estimation of one macroblock: predictors, a pattern that walks downhill, half-sample refinement.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "base/kernels/kernels.h"
@@ -12,7 +13,10 @@ namespace pac::mpeg1 {
 // Vectors that keep the prediction inside the picture and inside the largest f_code in use, both ends included.
 struct VectorRange {
   int x_low, x_high, y_low, y_high;  // half samples
-  MotionVector clamp(MotionVector v) const;
+  MotionVector clamp(MotionVector v) const {
+    return {static_cast<int16_t>(std::clamp(int{v.x_halfpel}, x_low, x_high)),
+            static_cast<int16_t>(std::clamp(int{v.y_halfpel}, y_low, y_high))};
+  }
   bool contains(int x, int y) const { return x >= x_low && x <= x_high && y >= y_low && y <= y_high; }
 };
 VectorRange vector_range(const Planes& reference, int column, int row, int f_code);

@@ -76,6 +76,11 @@ double Encoder::State::set_quantizers(PictureType type, const PictureOptions& pi
   const float* scales = is_free && picture.quantizer_map.empty() ? lookahead.scales(frame_in_group) : nullptr;
   if (scales != nullptr) return set_wanted(type, scales, scale);
   wanted.clear();
+  const bool is_even = picture.quantizer_map.empty() && (type == PictureType::P || !is_free);
+  if (is_even && scale == std::floor(scale)) {
+    std::fill(quantizers.begin(), quantizers.end(), static_cast<uint8_t>(std::clamp(scale, 1.0, 31.0)));
+    return scale;
+  }
   double sum = 0;
   int before = 0;
   for (size_t i = 0; i < quantizers.size(); ++i) {
@@ -87,8 +92,7 @@ double Encoder::State::set_quantizers(PictureType type, const PictureOptions& pi
     if (!picture.quantizer_map.empty()) quantizers[i] = picture.quantizer_map[i];
     sum += quantizers[i];
   }
-  const bool is_exact = picture.quantizer_map.empty() && (type == PictureType::P || !is_free);
-  return is_exact ? scale : sum / static_cast<double>(quantizers.size());
+  return is_even ? scale : sum / static_cast<double>(quantizers.size());
 }
 
 void Encoder::State::watch_stillness(PictureType type) {
