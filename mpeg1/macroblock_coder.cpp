@@ -114,15 +114,6 @@ class BandCoder : private MacroblockPlace {
     take(attempt);
   }
 
-  int64_t prediction_error(const Attempt& attempt) const {
-    const MacroblockSamples& p = attempt.prediction;
-    const Planes& s = task_.source;
-    int64_t error = motion_.sse(source(), s.stride[0], p.y, 16, 16, 16);
-    error += motion_.sse(s.at(1, column_, row_), s.stride[1], p.cb, 8, 8, 8);
-    error += motion_.sse(s.at(2, column_, row_), s.stride[2], p.cr, 8, 8, 8);
-    return error * kDistortionScale;
-  }
-
   // Bits, / kBit, of coded_block_pattern; of none only where prices are given.
   static int pattern_bits(const Attempt& attempt, unsigned pattern) {
     if (attempt.prices == nullptr) return kPatternCodes[pattern].length * kBit;
@@ -169,7 +160,7 @@ class BandCoder : private MacroblockPlace {
 
   // Of an inter attempt as it stands, or without its coefficients if that is cheaper.
   int64_t settle_inter(Attempt& attempt) const {
-    const int64_t without = prediction_error(attempt) + worth(lambda(), header_bits(attempt, false));
+    const int64_t without = attempt.energy + worth(lambda(), header_bits(attempt, false));
     if (attempt.pattern == 0) return without;
     choose_pattern(attempt);
     const int bits = attempt.bits + header_bits(attempt, true) + pattern_bits(attempt, attempt.pattern);
@@ -278,7 +269,7 @@ class BandCoder : private MacroblockPlace {
         range().contains(predicted.x_halfpel, predicted.y_halfpel))
       try_vector(predicted);
     if (task_.effort == Effort::best) refine_by_cost();
-    const int64_t error = prediction_error(attempts_[best_]) / kDistortionScale;
+    const int64_t error = attempts_[best_].energy / kDistortionScale;
     if (may_be_intra(static_cast<uint64_t>(error), task_.effort == Effort::best ? 8000 : 2500)) {
       Attempt& attempt = attempts_[1 - best_];
       start(attempt, quantizer());

@@ -13,28 +13,38 @@ namespace {
 alignas(64) constexpr uint8_t kZeros[16] = {};
 constexpr uint32_t kAllBlocks = (1u << kBlocks) - 1;
 
-int largest_level(const Attempt& attempt, int first_position) {
-  int largest = 0;
-  for (int block = 0; block < kBlocks; ++block)
-    for (uint64_t mask = attempt.nonzero[block] >> first_position << first_position; mask != 0; mask &= mask - 1) {
-      const int level = attempt.levels[64 * block + std::countr_zero(mask)];
-      largest = std::max(largest, level < 0 ? -level : level);
-    }
-  return largest;
+// |level| of a pair of blocks: without branches, so that compilers compare many at a time.
+int largest_level(const int16_t* levels) {
+  int16_t largest = 0, least = 0;
+  for (int i = 0; i < 128; ++i) {
+    largest = std::max(largest, levels[i]);
+    least = std::min(least, levels[i]);
+  }
+  return std::max<int>(largest, -least);
+}
+
+// Divides a pair of blocks; DC of intra is none of its business. Returns whether every level has a code.
+bool divide_pair(const BlockKernels& kernels, const QuantizerSet& set, int block, bool is_intra, Attempt& attempt) {
+  int16_t* levels = attempt.levels + 64 * block;
+  uint64_t* nonzero = attempt.nonzero + block;
+  kernels.quantize(attempt.dct + 64 * block, set.divide[attempt.quantizer], 2, levels, nonzero);
+  if (is_intra) {
+    levels[0] = levels[64] = 0;
+    nonzero[0] &= ~uint64_t{1}, nonzero[1] &= ~uint64_t{1};
+  }
+  return !set.may_overflow[attempt.quantizer] || largest_level(levels) <= kMaxLevel;
 }
 
 // Divides the blocks of `reaching` at the attempt's quantizer, or the next one at which every level has a code. The
 // others have no levels.
-void divide(const BlockKernels& kernels, const QuantizerSet& set, int first_position, uint32_t reaching,
-            Attempt& attempt) {
+void divide(const BlockKernels& kernels, const QuantizerSet& set, bool is_intra, uint32_t reaching, Attempt& attempt) {
   for (;; ++attempt.quantizer) {
+    bool is_coded = true;
     for (int block = 0; block < kBlocks; block += 2) {
       attempt.nonzero[block] = attempt.nonzero[block + 1] = 0;
-      if ((reaching >> block & 3) == 0) continue;
-      kernels.quantize(attempt.dct + 64 * block, set.divide[attempt.quantizer], 2, attempt.levels + 64 * block,
-                       attempt.nonzero + block);
+      if ((reaching >> block & 3) != 0) is_coded &= divide_pair(kernels, set, block, is_intra, attempt);
     }
-    if (!set.may_overflow[attempt.quantizer] || largest_level(attempt, first_position) <= kMaxLevel) return;
+    if (is_coded) return;
     if (attempt.quantizer == 31) break;
   }
   for (int block = 0; block < kBlocks; ++block)
@@ -110,7 +120,7 @@ void attempt_intra(const ResidualTask& task, const Planes& source, int column, i
   const Planes nothing = {
       {const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros), const_cast<uint8_t*>(kZeros)}, {0, 0, 0}, 16, 16};
   task.kernels->motion.fdct_macroblock(predicted_samples(source, column, row, nothing, 0, 0), 1, attempt.dct);
-  divide(task.kernels->block, *task.intra, 1, kAllBlocks, attempt);
+  divide(task.kernels->block, *task.intra, true, kAllBlocks, attempt);
   BlockToQuantize block;
   block.weight = task.intra->weight[attempt.quantizer];
   block.lambda = attempt.lambda;
@@ -120,7 +130,6 @@ void attempt_intra(const ResidualTask& task, const Planes& source, int column, i
     block.dct = attempt.dct + 64 * i;
     const int dc = std::clamp((block.dct[0] + 32) >> 6, 0, 255);
     attempt.dc[i] = static_cast<int16_t>(dc);
-    attempt.nonzero[i] &= ~uint64_t{1};
     const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
     const int64_t dc_error = block.dct[0] - 64 * dc;
     attempt.distortion += cost.distortion + dc_error * dc_error;
@@ -132,12 +141,12 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
                    Attempt& attempt) {
   attempt.kind = MacroblockKind::inter;
   attempt.pattern = 0;
-  attempt.distortion = 0;
+  attempt.distortion = attempt.energy = 0;
   attempt.bits = 0;
   const uint32_t reaching =
       task.kernels->motion.fdct_macroblock(predicted_samples(source, column, row, attempt.prediction.planes(), 0, 0),
                                            task.non_intra->least_weight[attempt.quantizer], attempt.dct);
-  divide(task.kernels->block, *task.non_intra, 0, reaching, attempt);
+  divide(task.kernels->block, *task.non_intra, false, reaching, attempt);
   BlockToQuantize block;
   block.weight = task.non_intra->weight[attempt.quantizer];
   block.lambda = attempt.lambda;
@@ -147,6 +156,7 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
     const BlockCost cost = choose_levels(task, block, with_cost, attempt.levels + 64 * i, attempt.nonzero[i]);
     if (attempt.nonzero[i] != 0) attempt.pattern = static_cast<uint8_t>(attempt.pattern | 32 >> i);
     attempt.costs[i] = cost;
+    attempt.energy += cost.energy;
     attempt.distortion += cost.distortion;
     attempt.bits += cost.bits;
   }

@@ -31,6 +31,7 @@ struct Attempt {
   alignas(64) int16_t levels[kBlocks * 64];  // zigzag order
   uint64_t nonzero[kBlocks] = {};            // bit k: level at zigzag position k
   int64_t distortion = 0;                    // squared error times 64, where it was asked for
+  int64_t energy = 0;                        // of inter: the same without any level
   const MacroblockPrices* prices = nullptr;  // null: Annex B's code lengths
   int bits = 0;                              // of the coefficients, / kBit
   BlockCost costs[kBlocks];                  // of inter, where it was asked for
