@@ -38,7 +38,8 @@ class FastSearch {
 
   void start_still() {
     const uint32_t cost = options_.still_sad + bits_cost(0, 0);
-    best_ = {{}, options_.still_sad, cost - std::min(cost, options_.still_bonus)};
+    best_.sad = options_.still_sad;
+    best_.cost = cost - std::min(cost, options_.still_bonus);
   }
 
   // A vector inside the range. True where it is the best so far.
@@ -48,7 +49,8 @@ class FastSearch {
         in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)](in_.source, in_.source_stride, reference, stride_);
     const uint32_t cost = sad + bits_cost(x, y);
     if (cost >= best_.cost) return false;
-    best_ = {{static_cast<int16_t>(x), static_cast<int16_t>(y)}, sad, cost};
+    best_.vector = {static_cast<int16_t>(x), static_cast<int16_t>(y)};
+    best_.sad = sad, best_.cost = cost;
     return true;
   }
 

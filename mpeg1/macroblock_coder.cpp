@@ -17,6 +17,9 @@ namespace {
 // Of quantizer_scale, that is worth its bits.
 constexpr float kLeastChange = 0.7F, kLeastShare = 0.2F;
 
+// Distance (SATD) in percent of the search's result with its bits, up to which another vector may turn out cheaper.
+constexpr uint64_t kWorst = 110;
+
 class BandCoder : private MacroblockPlace {
  public:
   BandCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band), fast_(task, band) {}
@@ -190,11 +193,16 @@ class BandCoder : private MacroblockPlace {
     return attempt.distortion + worth(lambda(), attempt.bits + kind + bits * kBit);
   }
 
-  // Tries a vector in the attempt that is not the best one.
-  void try_vector(MotionVector vector) {
+  // Tries a vector in the attempt that is not the best one: unless its prediction is so much worse than that of the
+  // search's result that what its code saves will not make up for it.
+  void try_vector(MotionVector vector, const SearchResult& found) {
     Attempt& attempt = attempts_[1 - best_];
     start(attempt, quantizer());
     predict(vector, attempt);
+    if (vector != found.vector) {
+      const uint32_t distance = motion_.satd16(source(), task_.source.stride[0], attempt.prediction.y, 16);
+      if (100 * uint64_t{distance} > kWorst * found.cost) return;
+    }
     attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
     keep_if_better(settle_inter(attempt));
   }
@@ -205,12 +213,12 @@ class BandCoder : private MacroblockPlace {
   }
 
   // The neighbors of the vector that came out best, by what they really cost.
-  void refine_by_cost() {
+  void refine_by_cost(const SearchResult& found) {
     const MotionVector center = attempts_[best_].vector;
     const VectorRange reach = range();
     for (int i = 0; i < 9; ++i) {
       const int x = center.x_halfpel + i % 3 - 1, y = center.y_halfpel + i / 3 - 1;
-      if (i != 4 && reach.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)});
+      if (i != 4 && reach.contains(x, y)) try_vector({static_cast<int16_t>(x), static_cast<int16_t>(y)}, found);
     }
   }
 
@@ -262,13 +270,18 @@ class BandCoder : private MacroblockPlace {
     const SearchResult found = search();
     least_ = INT64_MAX;
     best_ = 0;
-    try_vector(found.vector);
-    if (found.vector != MotionVector{} && (task_.effort == Effort::best || still_sad < found.sad * 2)) try_vector({});
+    try_vector(found.vector, found);
+    if (found.vector != MotionVector{} && (task_.effort == Effort::best || still_sad < found.sad * 2))
+      try_vector({}, found);
     const MotionVector predicted = predicted_vector();
     if (predicted != found.vector && predicted != MotionVector{} &&
         range().contains(predicted.x_halfpel, predicted.y_halfpel))
-      try_vector(predicted);
-    if (task_.effort == Effort::best) refine_by_cost();
+      try_vector(predicted, found);
+    if (task_.effort == Effort::best)
+      refine_by_cost(found);
+    else if (100 * uint64_t{found.runner_up_cost} <= kWorst * found.cost && found.runner_up != MotionVector{} &&
+             found.runner_up != predicted)
+      try_vector(found.runner_up, found);
     const int64_t error = attempts_[best_].energy / kDistortionScale;
     if (may_be_intra(static_cast<uint64_t>(error), task_.effort == Effort::best ? 8000 : 2500)) {
       Attempt& attempt = attempts_[1 - best_];

@@ -37,7 +37,8 @@ class Search {
   void accept(int x, int y, uint32_t sad) {
     const uint32_t cost = sad + bits_cost(x, y);
     if (cost >= best_.cost) return;
-    best_ = {{static_cast<int16_t>(x), static_cast<int16_t>(y)}, sad, cost};
+    best_.vector = {static_cast<int16_t>(x), static_cast<int16_t>(y)};
+    best_.sad = sad, best_.cost = cost;
   }
 
   void try_candidates() {
@@ -112,11 +113,22 @@ class Search {
       if (in_.range.contains(x, y)) accept(x, y, half_distance(x, y));
     };
     if (options_.hadamard) {
-      for (int i = 0; i < 9; ++i)
-        if (i != 4) try_half(i % 3 - 1, i / 3 - 1);
+      for (int i = 0; i < 9; ++i) {
+        const int x = center.x_halfpel + i % 3 - 1, y = center.y_halfpel + i / 3 - 1;
+        if (i != 4 && in_.range.contains(x, y)) accept_or_note(x, y, half_distance(x, y));
+      }
       return;
     }
     refine_by_halves(best_.vector, try_half);
+  }
+  void accept_or_note(int x, int y, uint32_t distance) {
+    const SearchResult before = best_;
+    accept(x, y, distance);
+    const bool is_best = best_.vector != before.vector;
+    const uint32_t cost = is_best ? before.cost : distance + bits_cost(x, y);
+    if (cost >= best_.runner_up_cost) return;
+    best_.runner_up = is_best ? before.vector : MotionVector{static_cast<int16_t>(x), static_cast<int16_t>(y)};
+    best_.runner_up_cost = cost;
   }
 
   const SearchInput& in_;

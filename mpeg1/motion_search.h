@@ -47,6 +47,9 @@ struct SearchResult {
   MotionVector vector;
   uint32_t sad = 0;   // of the best vector, SATD where asked for
   uint32_t cost = 0;  // with the vector's bits
+  // By SATD only: the next best vector around it, and what it costs.
+  MotionVector runner_up;
+  uint32_t runner_up_cost = ~uint32_t{0};
 };
 
 // Half samples around `best`: the better neighbor to the side, the better one up or down, then the corners beside the
