@@ -8,7 +8,11 @@ namespace {
 
 class Search {
  public:
-  Search(const SearchInput& input, const SearchOptions& options) : in_(input), options_(options) {}
+  Search(const SearchInput& input, const SearchOptions& options)
+      : in_(input),
+        options_(options),
+        still_(input.reference.data[0] + 16 * input.row * input.reference.stride[0] + 16 * input.column),
+        stride_(input.reference.stride[0]) {}
 
   SearchResult run() {
     try_candidates();
@@ -21,17 +25,17 @@ class Search {
 
  private:
   const uint8_t* at(int x, int y) const {  // half samples, rounded down
-    return in_.reference.data[0] + (16 * in_.row + (y >> 1)) * in_.reference.stride[0] + 16 * in_.column + (x >> 1);
+    return still_ + (y >> 1) * stride_ + (x >> 1);
   }
+  // Neither vector leaves the range of an f_code: their difference is in the table.
   uint32_t bits_cost(int x, int y) const {
-    const int dx = std::min(std::abs(x - in_.predicted.x_halfpel), kMaxDifference);
-    const int dy = std::min(std::abs(y - in_.predicted.y_halfpel), kMaxDifference);
+    const int dx = std::abs(x - in_.predicted.x_halfpel), dy = std::abs(y - in_.predicted.y_halfpel);
     return (static_cast<uint32_t>(in_.bits_of_difference[dx] + in_.bits_of_difference[dy]) * in_.lambda_q4) >> 4;
   }
 
   // A vector of whole samples inside the range.
   void try_whole(int x, int y) {
-    const uint32_t sad = in_.kernels->sad16(in_.source, in_.source_stride, at(x, y), in_.reference.stride[0]);
+    const uint32_t sad = in_.kernels->sad16(in_.source, in_.source_stride, at(x, y), stride_);
     accept(x, y, sad);
   }
   void accept(int x, int y, uint32_t sad) {
@@ -50,7 +54,9 @@ class Search {
       MotionVector v = in_.range.clamp(in_.candidates[i]);
       v.x_halfpel = static_cast<int16_t>(v.x_halfpel & ~1);  // the range's ends are even
       v.y_halfpel = static_cast<int16_t>(v.y_halfpel & ~1);
-      if (std::find(tried, tried + n_tried, v) != tried + n_tried) continue;
+      bool is_new = true;
+      for (int k = 0; k < n_tried; ++k) is_new &= v != tried[k];
+      if (!is_new) continue;
       if (n_tried < 32) tried[n_tried++] = v;
       try_whole(v.x_halfpel, v.y_halfpel);
     }
@@ -95,10 +101,9 @@ class Search {
 
   uint32_t half_distance(int x, int y) const {
     const int kind = (x & 1) + 2 * (y & 1);
-    if (!options_.hadamard)
-      return in_.kernels->sad16_half[kind](in_.source, in_.source_stride, at(x, y), in_.reference.stride[0]);
+    if (!options_.hadamard) return in_.kernels->sad16_half[kind](in_.source, in_.source_stride, at(x, y), stride_);
     alignas(64) uint8_t prediction[256];
-    in_.kernels->predict16[kind](at(x, y), in_.reference.stride[0], prediction, 16, 16);
+    in_.kernels->predict16[kind](at(x, y), stride_, prediction, 16, 16);
     return in_.kernels->satd16(in_.source, in_.source_stride, prediction, 16);
   }
 
@@ -133,6 +138,8 @@ class Search {
 
   const SearchInput& in_;
   const SearchOptions& options_;
+  const uint8_t* still_;  // where the zero vector leads
+  ptrdiff_t stride_;
   SearchResult best_;
 };
 

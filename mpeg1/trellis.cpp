@@ -53,33 +53,22 @@ struct Choice {
 template <bool kIsIntra>
 inline Choice make_choice(int level, int weight, int c) {
   const int r = 8 * (kIsIntra ? reconstruct_intra(level, weight) : reconstruct_non_intra(level, weight));
-  const bool is_allowed = level > 0 && r != 0;                                  // decoders disagree about 0
-  return {bits_of_level(level).data(), is_allowed ? r * (r - 2 * c) : kNever};  // (c - r)^2 - c^2
+  return {bits_of_level(level).data(), r != 0 ? r * (r - 2 * c) : kNever};  // decoders disagree about 0
 }
 
-// The cheapest of the paths that end at a position, with one of two levels there.
+// The cheapest of the paths that end at a position, with one of one or two levels there.
 struct Step {
   int64_t cost = kNever;
   int from = 0, bits = 0;
   bool is_second = false;
 };
-inline Step cheapest(const LivePath* live, int n_live, int position, int64_t lambda, const Choice (&choices)[2]) {
-  Step best;
-  for (int second = 0; second < 2; ++second)
-    for (int i = 0; i < n_live; ++i) {
-      const int bits = choices[second].bits[position - live[i].position - 1];
-      const int64_t cost = live[i].cost + choices[second].gained + lambda * bits;
-      if (cost < best.cost) best = {cost, i, bits, second != 0};
-    }
-  return best;
-}
-// The same of the only path, as it mostly is.
-inline Step only_step(const LivePath& from, int position, int64_t lambda, const Choice (&choices)[2]) {
-  const int run = position - from.position - 1;
-  const int bits[2] = {choices[0].bits[run], choices[1].bits[run]};
-  const int64_t first = choices[0].gained + lambda * bits[0], second = choices[1].gained + lambda * bits[1];
-  const bool is_second = second < first;
-  return {from.cost + (is_second ? second : first), 0, is_second ? bits[1] : bits[0], is_second};
+inline void take_cheaper(const LivePath* live, int n_live, int position, int64_t lambda, const Choice& choice,
+                         bool is_second, Step& best) {
+  for (int i = 0; i < n_live; ++i) {
+    const int bits = choice.bits[position - live[i].position - 1];
+    const int64_t cost = live[i].cost + choice.gained + lambda * bits;
+    if (cost < best.cost) best = {cost, i, bits, is_second};
+  }
 }
 
 // A path at given prices: its distortion is less the energy, cost and bits are times kBit.
@@ -106,33 +95,52 @@ int size_price(const BlockPrices& prices, int position, int level) {
   return prices.size[position][kSizes - 1] + (level - kSizes) * prices.step[position];
 }
 
+// The cheapest way to end at a position: with the level there, or the next smaller one unless that takes away more than
+// its code can be shorter. A cost of kNever or about: there is none.
+template <bool kIsIntra>
+inline Step best_step(const BlockToQuantize& block, const LivePath* live, int n_live, int position, int level) {
+  const int c = coefficient(block, position), weight = block.weight[position];
+  const int64_t lambda = block.lambda;
+  const bool saves = !kIsIntra && position == block.first_position;  // where the level is 1
+  Choice first = make_choice<kIsIntra>(level, weight, c);
+  if (saves && level == 1) first.gained -= lambda;
+  Step best;
+  take_cheaper(live, n_live, position, lambda, first, false, best);
+  if (level > 1) {
+    Choice second = make_choice<kIsIntra>(level - 1, weight, c);
+    if (saves && level == 2) second.gained -= lambda;
+    if (second.gained < first.gained + lambda * kWriting.longer_level[row_of_level(level)])
+      take_cheaper(live, n_live, position, lambda, second, true, best);
+  }
+  if (saves && level - (best.is_second ? 1 : 0) == 1) --best.bits;
+  return best;
+}
+
 template <bool kIsIntra>
 BlockCost quantize(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
   const int64_t lambda = block.lambda;
   Path paths[65];
   // Costs grow from path to path: one that a later one beats is dropped, as a longer run never has a shorter code
-  // worth speaking of.
+  // worth speaking of. One that costs more than shorter runs can save is not even begun.
   LivePath live[65];
   int n_paths = 0, n_live = 0;
   paths[n_paths++] = {0, -1, 0, 0};
   live[n_live++] = {0, block.first_position - 1, 0};
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
-    const int position = std::countr_zero(mask);
-    const int c = coefficient(block, position), weight = block.weight[position], level = magnitude_of(levels[position]);
-    Choice choices[2] = {make_choice<kIsIntra>(level, weight, c), make_choice<kIsIntra>(level - 1, weight, c)};
-    const int first_saves = kIsIntra || position != block.first_position ? 0 : 1;  // where the level is 1
-    if (first_saves != 0 && level <= 2) choices[level - 1].gained -= lambda;
-    Step best =
-        n_live == 1 ? only_step(live[0], position, lambda, choices) : cheapest(live, n_live, position, lambda, choices);
+    const int position = std::countr_zero(mask), level = magnitude_of(levels[position]);
+    const Step best = best_step<kIsIntra>(block, live, n_live, position, level);
     if (best.cost >= kNever / 2) continue;
-    const int chosen_level = level - (best.is_second ? 1 : 0);
-    if (first_saves != 0 && chosen_level == 1) --best.bits;
     const int previous = live[best.from].path;
     while (n_live > 0 && live[n_live - 1].cost >= best.cost) --n_live;
-    if (n_live > 0 && best.cost > live[n_live - 1].cost + 24 * lambda) continue;
+    if (n_live > 0) {
+      const LivePath& cheaper = live[n_live - 1];
+      if (best.cost >= cheaper.cost + lambda * kWriting.longer_run[static_cast<size_t>(position - cheaper.position)])
+        continue;
+    }
     live[n_live++] = {best.cost, position, n_paths};
     paths[n_paths++] = {static_cast<int16_t>(previous), static_cast<int16_t>(position),
-                        static_cast<int16_t>(chosen_level), static_cast<int16_t>(paths[previous].bits + best.bits)};
+                        static_cast<int16_t>(level - (best.is_second ? 1 : 0)),
+                        static_cast<int16_t>(paths[previous].bits + best.bits)};
   }
   // Where to end: the first path that codes something is the cheapest one; or nothing at all.
   const int end_bits = kEndOfBlock.length;

@@ -155,6 +155,19 @@ constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
   return (escape << 8 | (static_cast<uint32_t>(level) & 255)) << 5 | 20;  // [table B.5f]
 }
 
+// By how much a code may be longer than that of another row or run.
+constexpr void compare_bits(WritingTables& tables) {
+  const auto raise = [](uint8_t& most, int bits) { most = bits > most ? static_cast<uint8_t>(bits) : most; };
+  for (size_t row = 1; row < tables.bits.size(); ++row)
+    for (size_t run = 0; run <= kTokenRuns; ++run) {  // all longer ones take what this one takes, the most
+      const int bits = tables.bits[row][run];
+      if (row > 1) raise(tables.longer_level[row], bits - tables.bits[row - 1][run]);
+      for (size_t shorter = 0; shorter < run; ++shorter)
+        raise(tables.longer_run[run - shorter], bits - tables.bits[row][shorter]);
+    }
+  for (size_t n = 1; n < tables.longer_run.size(); ++n) raise(tables.longer_run[n], tables.longer_run[n - 1]);
+}
+
 constexpr WritingTables make_writing_tables() {
   WritingTables tables{};
   for (const MacroblockType& type : kTypesOfP) tables.type_of_p[type.flags] = type.code;
@@ -169,6 +182,7 @@ constexpr WritingTables make_writing_tables() {
       if (level != 0)
         tables.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)] =
             token_code(tables, run, level);
+  compare_bits(tables);
   return tables;
 }
 

@@ -91,13 +91,19 @@ struct WritingTables {
   // Bits of dct_coeff_next with the sign or the escape, at [|level|][run]; the last two rows are those of all levels
   // above kMaxTableLevel: below 128 and from there on.
   std::array<std::array<uint8_t, 64>, kMaxTableLevel + 3> bits;
+  // Of the same rows: the most bits by which, after any run, a level is longer than that before it; 0 for level 1.
+  std::array<uint8_t, kMaxTableLevel + 3> longer_level;
+  // [n]: the most bits by which the same level is longer after a run of n zeros more.
+  std::array<uint8_t, 64> longer_run;
 };
 extern const WritingTables kWriting;
 
+inline size_t row_of_level(int level) {
+  return static_cast<size_t>(level <= kMaxTableLevel ? level : kMaxTableLevel + (level < 128 ? 1 : 2));
+}
 // Bits of dct_coeff_next for |level| >= 1 after each run, sign included [2.4.3.7].
 inline const std::array<uint8_t, 64>& bits_of_level(int level) {
-  const int row = level <= kMaxTableLevel ? level : kMaxTableLevel + (level < 128 ? 1 : 2);
-  return kWriting.bits[static_cast<size_t>(row)];
+  return kWriting.bits[row_of_level(level)];
 }
 inline int run_level_bits(int run, int level) {
   return bits_of_level(level)[static_cast<size_t>(run)];
