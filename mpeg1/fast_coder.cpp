@@ -9,8 +9,9 @@
 namespace pac::mpeg1 {
 namespace {
 
-// Below it no variation of a macroblock is small enough for may_be_intra.
-constexpr uint32_t kLeastIntraSad = 836;
+// Of luma, from which on a macroblock may be better off without a prediction: 2 a sample. An error worth that,
+// 16 a sample squared and more, hardly hides in less.
+constexpr uint32_t kLeastIntraSad = 512;
 constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pattern longer, about
 
 }  // namespace
@@ -40,9 +41,12 @@ FastCoder::Outcome FastCoder::code(int column, int row) {
   }
   uint32_t sad = 0;
   vector_ = search(quarters[0] + quarters[1] + quarters[2] + quarters[3], sad);
-  // The squares of the error sum up to sad^2 / 256 at least.
-  if (sad >= kLeastIntraSad && may_be_intra(static_cast<uint64_t>(sad) * sad / 256, 1500)) return Outcome::intra;
   predict_macroblock(motion_, task_.reference, column_, row_, vector_, task_.target);
+  if (sad >= kLeastIntraSad) {
+    const Planes& t = task_.target;
+    const uint64_t error = motion_.sse(source(), task_.source.stride[0], t.at(0, column_, row_), t.stride[0], 16, 16);
+    if (may_be_intra(error, 1000)) return Outcome::intra;
+  }
   return code_errors();
 }
 
