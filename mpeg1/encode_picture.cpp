@@ -43,7 +43,9 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     task.wanted = wanted.data();
     task.lambdas = lambdas.data();
   }
-  task.vary_quantizers = options.effort == Effort::best && picture.quantizer_map.empty();
+  // Not where the reference is another's: measured, 3 to 5 % more bytes at equal scores there.
+  task.vary_quantizers =
+      options.effort == Effort::best && picture.quantizer_map.empty() && picture.reference == nullptr;
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
   task.candidates = picture.candidates.data();
   task.candidates_per_macroblock = picture.candidates_per_macroblock;

@@ -142,6 +142,13 @@ const char* Encoder::State::problem_with_picture(const Frame420& frame, const Pi
     return "quantizer_map has not one entry a macroblock";
   for (const uint8_t q : picture.quantizer_map)
     if (q < 1 || q > 31) return "quantizer_map entry outside 1..31";
+  if (!picture.quantizer_factors.empty()) {
+    if (picture.quantizer_factors.size() != count) return "quantizer_factors has not one entry a macroblock";
+    if (has_rate || !picture.quantizer_map.empty())
+      return "quantizer_factors need neither constant bit rate nor quantizer_map";
+    for (const float factor : picture.quantizer_factors)
+      if (!(factor >= 0.0625F && factor <= 16.0F)) return "quantizer_factors entry outside 1/16..16";
+  }
   if (!picture.prices.empty() && picture.prices.size() != count) return "prices have not one entry a macroblock";
   if (picture.quantizer_scale != 0 && !(picture.quantizer_scale >= 1 && picture.quantizer_scale <= 31))
     return "quantizer_scale is outside 1..31";

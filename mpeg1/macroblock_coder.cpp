@@ -49,7 +49,7 @@ class BandCoder : private MacroblockPlace {
   // A change costs five bits and a longer type: that of the last coded macroblock stays while it is near.
   void settle_quantizer() {
     const float wanted = task_.wanted[address()];
-    const float near = std::max(kLeastChange, kLeastShare * wanted);
+    const float near = task_.prices != nullptr ? 0.55F + 0.05F * wanted : std::max(kLeastChange, kLeastShare * wanted);
     const bool stays = last_quantizer_ != 0 && std::abs(wanted - static_cast<float>(last_quantizer_)) < near;
     const int rounded = static_cast<int>(wanted + 0.5F);
     task_.quantizers[address()] = static_cast<uint8_t>(stays ? last_quantizer_ : std::clamp(rounded, 1, 31));
@@ -224,19 +224,22 @@ class BandCoder : private MacroblockPlace {
 
   // ---- The quantizer -----------------------------------------------------------------------------------------------
 
-  // Bits of another quantizer than the last one's: its five, and a longer type [table B.2].
+  // Bits, / kBit, of another quantizer than the last one's: its five, and a longer type [table B.2].
   int quantizer_bits(const Attempt& attempt) const {
     const bool is_intra = attempt.kind == MacroblockKind::intra;
     const bool is_coded = is_intra || attempt.pattern != 0;
-    if (!is_coded || last_quantizer_ == 0 || attempt.quantizer == last_quantizer_) return 0;
-    if (is_intra) return 6;
-    return attempt.vector != MotionVector{} ? 9 : 8;
+    if (!is_coded || last_quantizer_ == 0) return 0;
+    const bool is_same = attempt.quantizer == last_quantizer_;
+    if (attempt.prices != nullptr) return is_same ? attempt.prices->same : attempt.prices->changed;
+    if (is_same) return 0;
+    if (is_intra) return 6 * kBit;
+    return (attempt.vector != MotionVector{} ? 9 : 8) * kBit;
   }
 
   // The best attempt again with other quantizers, at the same lambda.
   void vary_quantizer() {
     const int nominal = quantizer();
-    least_ += lambda() * quantizer_bits(attempts_[best_]);
+    least_ += worth(lambda(), quantizer_bits(attempts_[best_]));
     const bool last_is_near = 4 * std::abs(last_quantizer_ - nominal) <= std::max(4, nominal);
     const int wanted[3] = {last_quantizer_ != 0 && last_is_near ? last_quantizer_ : nominal, nominal - 1, nominal + 1};
     for (int i = 0; i < 3; ++i) {
@@ -256,7 +259,7 @@ class BandCoder : private MacroblockPlace {
         attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
         cost = settle_inter(attempt);
       }
-      keep_if_better(cost + lambda() * quantizer_bits(attempt));
+      keep_if_better(cost + worth(lambda(), quantizer_bits(attempt)));
     }
   }
 

@@ -110,6 +110,7 @@ struct BlockPrices {
 struct MacroblockPrices {
   uint16_t skipped = 0, inter = 0, intra = 0;  // its kind
   uint16_t still = 0, moving = 0;              // of inter: vector zero; another, before its own bits
+  uint16_t same = 0, changed = 0;              // quantizer_scale as of the last coded macroblock, or the next one to it
   BlockPrices blocks[6];
 };
 
@@ -127,6 +128,10 @@ struct PictureOptions {
   int candidates_per_macroblock = 0;
   // quantizer_scale of each macroblock, 1..31, raster order; empty: quantizer_scale everywhere.
   std::span<const uint8_t> quantizer_map;
+  // What quantizer_scale is multiplied by in each macroblock, 1/16..16, raster order; empty: by 1. An error of a
+  // macroblock of 1/2 counts four times as much. Followed where it is worth the change of quantizer_scale that it
+  // costs. Not with a quantizer_map or a constant bit rate.
+  std::span<const float> quantizer_factors;
   // The frames that come after this one, in order, as many as are known; those after the group are not looked at. Where
   // the picture starts a group the encoder sees from them which macroblocks the group goes on showing, and quantizes
   // those finer than quantizer_scale, here and in the pictures that follow: more bytes at the same quantizer_scale,

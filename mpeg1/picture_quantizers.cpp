@@ -54,7 +54,7 @@ double Encoder::State::intra_scale(size_t macroblock) const {
   return mix(1, mix(kMovingIntraScale, kStillIntraScale, stillness), reuse());
 }
 
-// By the lookahead: between integers, settled macroblock by macroblock.
+// Between integers, settled macroblock by macroblock.
 double Encoder::State::set_wanted(PictureType type, const float* scales, double scale) {
   const auto count = quantizers.size();
   wanted.resize(count);
@@ -73,8 +73,16 @@ double Encoder::State::set_wanted(PictureType type, const float* scales, double 
 // Between integers the first part of the macroblocks has the smaller quantizer: few changes of it in the stream.
 double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
   const bool is_free = !has_rate && picture.quantizer_scale == 0;
-  const float* scales = is_free && picture.quantizer_map.empty() ? lookahead.scales(frame_in_group) : nullptr;
-  if (scales != nullptr) return set_wanted(type, scales, scale);
+  const float* scales = !picture.quantizer_factors.empty()         ? picture.quantizer_factors.data()
+                        : is_free && picture.quantizer_map.empty() ? lookahead.scales(frame_in_group)
+                                                                   : nullptr;
+  if (scales != nullptr) {
+    const double mean = set_wanted(type, scales, scale);
+    if (picture.quantizer_factors.empty()) return mean;
+    const auto step = 1 / static_cast<float>(wanted.size());
+    for (size_t i = 0; i < wanted.size(); ++i) wanted[i] += (static_cast<float>(i) + 0.5F) * step - 0.5F;
+    return scale;
+  }
   wanted.clear();
   const bool is_even = picture.quantizer_map.empty() && (type == PictureType::P || !is_free);
   if (is_even && scale == std::floor(scale)) {

@@ -94,4 +94,16 @@ void previous_clip_positions(const Scene& scene, const Camera& previous_camera, 
   });
 }
 
+Light posed_light(const Scene& scene, const Light& light) {
+  if (light.object < 0 || static_cast<size_t>(light.object) >= scene.objects.size()) return light;
+  const glm::mat4& m = scene.objects[static_cast<size_t>(light.object)].world_from_object;
+  Light posed = light;
+  for (int row = 0; row < 3; ++row) {
+    const auto turned = [&](const glm::vec3& v) { return (m[0][row] * v[0] + m[1][row] * v[1]) + m[2][row] * v[2]; };
+    posed.direction[row] = turned(light.direction);
+    posed.position[row] = turned(light.position) + m[3][row];
+  }
+  return posed;
+}
+
 }  // namespace pac::raster

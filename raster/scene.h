@@ -91,6 +91,7 @@ struct Light {
   // makes shadows soft; and whether anything shades it at all.
   float radius = 0;
   bool casts_shadows = true;
+  int32_t object = -1;  // index into Scene::objects: position and direction move with it; -1: they are the world's
 };
 
 // Vertices that move together: an affine transform (last row 0 0 0 1) from the mesh's coordinates to the world's, in
@@ -131,6 +132,9 @@ struct Scene {
   // middle, latitude from +y at the top to -y.
   int32_t environment = -1;
 };
+
+// Where the light is in this frame. An object that the scene has not moves nothing.
+Light posed_light(const Scene& scene, const Light& light);
 
 // Where from and how the scene is seen. Travels between machines as the raw bits of these floats, never as angles.
 struct Camera {

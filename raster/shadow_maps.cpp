@@ -179,7 +179,7 @@ Result<void> ShadowMaps::draw(const Scene& scene, const Mesh& mesh, int side, co
   depths_.resize(scene.lights.size());
   for (size_t i = 0; i < scene.lights.size() && i < kMaxKernelLights; ++i) {
     LightView view;
-    if (!view_of(scene.lights[i], box, texels, view)) continue;
+    if (!view_of(posed_light(scene, scene.lights[i]), box, texels, view)) continue;
     const Camera camera = camera_of(view);
     PAC_CHECK(prepare_depth_surfaces(scene, surfaces_));
     PaintInput input{};

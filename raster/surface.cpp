@@ -91,7 +91,7 @@ void set_lighting(const Scene& scene, const Camera& camera, const Material& mate
     if (material.specular[c] != 0) out.has_specular = 1;
   }
   for (size_t i = 0; i < scene.lights.size(); ++i) {
-    set_light(scene.lights[i], material, out.lights[i]);
+    set_light(posed_light(scene, scene.lights[i]), material, out.lights[i]);
     for (int c = 0; c < 3; ++c) out.lights[i].diffuse[c] = out.lights[i].diffuse[c] * surface.mean[c];
   }
   if (scene.lights.empty()) out.has_specular = 0;

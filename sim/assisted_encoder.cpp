@@ -110,6 +110,7 @@ struct AssistedEncoder::State {
   Bytes picture;                        // of the last frame
   double last_quantizer = 0;            // of a picture between two that stand alone; 0: none yet
   std::optional<ModelFlow> block_flow;  // of block prediction: where the search for vectors begins
+  QuantizerAdaptation adaptation;
 
   // Where the search of a bit rate begins.
   double first_guess(bool is_key) const {
@@ -124,6 +125,7 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
   if (const char* problem = problem_with(options)) return Failure{Error::bad_argument, 0, problem};
   if (const char* problem = problem_with(options.rate, scene.width, scene.height))
     return Failure{Error::bad_argument, 0, problem};
+  PAC_TRY(QuantizerAdaptation adaptation, QuantizerAdaptation::create(*scene.low, options.foreground));
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence_options(scene, options), isa));
   return AssistedEncoder(std::make_unique<State>(State{settled(options, scene),
                                                        isa,
@@ -137,7 +139,8 @@ Result<AssistedEncoder> AssistedEncoder::create(const AssistedScene& scene, cons
                                                        {},
                                                        {},
                                                        0,
-                                                       block_flow_for(scene, options, isa)}));
+                                                       block_flow_for(scene, options, isa),
+                                                       std::move(adaptation)}));
 }
 
 AssistedEncoder::AssistedEncoder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -179,8 +182,10 @@ Result<AssistedReport> AssistedEncoder::encode(const AssistedFrame& frame, Bytes
   if (quantizer_scale > 0) wanted.quantizer_scale = quantizer_scale;
   picture.quantizer_scale = is_key ? key_quantizer_for(wanted) : wanted.quantizer_scale;
   const bool packs = replaced && options.is_packed;
+  const bool masks = is_key && options.adapts_to_texture;
+  picture.quantizer_factors = s.adaptation.factors(frame.high, frame.id, masks);
   const size_t before = out.size(), begin = before + 1;  // a byte before the picture
-  const bool is_priced = packs && options.effort != mpeg1::Effort::fast;
+  const bool is_priced = packs && options.is_priced && options.effort != mpeg1::Effort::fast;
   PackedSearch search{std::nullopt, packs ? &s.packer : nullptr,    is_key, s.shared.surface(), out, begin,
                       picture,      is_priced ? &s.prices : nullptr};
   if (options.rate.is_on()) {

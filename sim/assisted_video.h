@@ -25,6 +25,7 @@
 #include "raster/renderer.h"
 #include "raster/scene.h"
 #include "sim/bit_rate.h"
+#include "sim/quantizer_adaptation.h"
 
 namespace pac::sim {
 
@@ -44,6 +45,10 @@ struct AssistedVideoOptions {
   int picture_rate_code = 3;               // for the headers only
   mpeg1::Effort effort = mpeg1::Effort::normal;
   bool is_packed = true;  // where the reference picture is replaced
+  bool is_priced = true;  // packed pictures above Effort::fast are coded again at what their bits cost packed
+  // Pictures that stand alone: finer where H is smooth, coarser where its texture hides errors.
+  bool adapts_to_texture = false;
+  Foreground foreground;  // what is quantized finer than the quantizers above say, or coarser
   BitRate rate;  // on: every picture's quantizer is chosen for it, and the quantizers above are where the search begins
 };
 
@@ -81,7 +86,7 @@ struct AssistedReport {
 // One object, one thread at a time.
 class AssistedEncoder {
  public:
-  // Fails with bad_argument: sizes, ranges, block prediction of full differences.
+  // Fails with bad_argument: sizes, ranges, block prediction of full differences, an unknown foreground.
   static Result<AssistedEncoder> create(const AssistedScene& scene, const AssistedVideoOptions& options,
                                         Isa isa = best_isa());
   ~AssistedEncoder();

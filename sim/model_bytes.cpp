@@ -8,6 +8,7 @@
 //   specular u32, emission u32, reflection 3 f32, its blur f32
 // and, where flag 8 says that parts can move: objects u32 | object: first vertex u32, vertices u32, columns of its
 //   transform 4 x 3 f32
+// and, where flag 16 says that lights move: of each light u32, 1 + the object it moves with, 0 none
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -20,7 +21,7 @@ namespace pac::sim {
 
 namespace {
 
-constexpr uint8_t kNormals = 1, kTexcoords = 2, kLooks = 4, kObjects = 8;
+constexpr uint8_t kNormals = 1, kTexcoords = 2, kLooks = 4, kObjects = 8, kCarriedLights = 16;
 constexpr size_t kMaterialBytes = 60, kLightBytes = 56, kVertexBytes = 16, kFaceBytes = 8, kTextureBytes = 12,
                  kObjectBytes = 56;
 
@@ -267,13 +268,29 @@ bool any_lit(const raster::Scene& scene) {
   return false;
 }
 
+bool any_carried(const raster::Scene& scene) {
+  return std::any_of(scene.lights.begin(), scene.lights.end(), [](const raster::Light& l) { return l.object >= 0; });
+}
+
+Result<void> read_carried_lights(ByteReader& reader, raster::Scene& scene) {
+  for (raster::Light& light : scene.lights) {
+    const size_t at = reader.position();
+    const uint32_t object = reader.u32();
+    if (object > scene.objects.size())
+      return Failure{Error::corrupt, at, "light moves with an object that is not there"};
+    light.object = static_cast<int32_t>(object) - 1;
+  }
+  return {};
+}
+
 }  // namespace
 
 Bytes serialize_model(const raster::Scene& scene, bool wants_texture) {
   const bool textured = wants_texture || has_masks(scene);
   const bool texcoords = textured && !scene.textures.empty();
   const auto fields = static_cast<uint8_t>((any_lit(scene) ? kNormals : 0) | (texcoords ? kTexcoords : 0) |
-                                           (has_looks(scene) ? kLooks : 0) | (scene.objects.empty() ? 0 : kObjects));
+                                           (has_looks(scene) ? kLooks : 0) | (scene.objects.empty() ? 0 : kObjects) |
+                                           (any_carried(scene) ? kCarriedLights : 0));
   ByteWriter writer;
   writer.u8(fields);
   for (const size_t count : {scene.mesh.vertices.size(), scene.mesh.faces.size(), scene.materials.size(),
@@ -287,6 +304,8 @@ Bytes serialize_model(const raster::Scene& scene, bool wants_texture) {
   for (const raster::Light& light : scene.lights) write_light(writer, light);
   if ((fields & kLooks) != 0) write_looks(writer, scene);
   if ((fields & kObjects) != 0) write_objects(writer, scene);
+  if ((fields & kCarriedLights) != 0)
+    for (const raster::Light& light : scene.lights) writer.u32(static_cast<uint32_t>(light.object + 1));
   return writer.take();
 }
 
@@ -294,7 +313,7 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
   if (bytes.size() > limits.max_bytes) return Failure{Error::limit_exceeded, 0, "model has more bytes than the limit"};
   ByteReader reader(bytes);
   const uint8_t fields = reader.u8();
-  if ((fields & ~(kNormals | kTexcoords | kLooks | kObjects)) != 0)
+  if ((fields & ~(kNormals | kTexcoords | kLooks | kObjects | kCarriedLights)) != 0)
     return Failure{Error::unsupported, 0, "unknown vertex fields"};
   const uint64_t n_vertices = reader.u32(), n_faces = reader.u32(), n_materials = reader.u32();
   const uint32_t n_textures = reader.u32(), n_lights = reader.u32();
@@ -325,6 +344,7 @@ Result<raster::Scene> parse_model(std::span<const uint8_t> bytes, const Limits& 
   }
   if ((fields & kLooks) != 0) PAC_CHECK(read_looks(reader, n_textures, scene));
   if ((fields & kObjects) != 0) PAC_CHECK(read_objects(reader, scene));
+  if ((fields & kCarriedLights) != 0) PAC_CHECK(read_carried_lights(reader, scene));
   if (reader.overrun()) return Failure{Error::truncated, bytes.size(), "model ends early"};
   if (reader.remaining() != 0) return Failure{Error::corrupt, reader.position(), "bytes after the end of the model"};
   PAC_CHECK(validate(scene.mesh, static_cast<uint32_t>(n_materials), limits));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/exact_math.h"
+
 namespace pac::sim {
 
 Transforms transforms_of(const raster::Scene& scene) {
@@ -59,6 +61,23 @@ Result<void> check_objects(const raster::Scene& scene) {
       return Failure{Error::corrupt, order[i], "two objects move the same vertex"};
   }
   return {};
+}
+
+void move_lights(raster::Scene& scene) {
+  for (raster::Light& light : scene.lights) {
+    light.object = static_cast<int32_t>(scene.objects.size());
+    scene.objects.push_back({0, 0, glm::mat4(1.0f), glm::mat4(1.0f)});
+  }
+}
+
+void add_light_transforms(int frame, size_t n_lights, Transforms& out) {
+  const double angle = 2 * kPi * frame / kLightTurnFrames;
+  const auto cosine = static_cast<float>(exact_cos(angle)), sine = static_cast<float>(exact_sin(angle));
+  glm::mat4 turn(1.0f);
+  turn[0][0] = turn[2][2] = cosine;
+  turn[0][2] = -sine;
+  turn[2][0] = sine;
+  out.insert(out.end(), n_lights, turn);
 }
 
 std::vector<uint32_t> movers_of(const raster::Scene& scene) {

@@ -29,6 +29,13 @@ Result<void> move_objects(std::span<const glm::mat4> transforms, raster::Scene& 
 // (Failure::byte_offset is the object's number).
 Result<void> check_objects(const raster::Scene& scene);
 
+// Makes an object without vertices of each light, which moves with it from then on. Behind the objects that are there.
+void move_lights(raster::Scene& scene);
+// Where those objects are in a frame: they go round the vertical through the origin once in kLightTurnFrames, at frame
+// 0 all are the identity.
+constexpr int kLightTurnFrames = 160;
+void add_light_transforms(int frame, size_t n_lights, Transforms& out);
+
 // What moves a face. kTorn: its corners move in different ways, so that no transform does.
 constexpr uint32_t kStands = 0, kTorn = UINT32_MAX;
 

@@ -34,7 +34,7 @@ constexpr uint32_t kPlanes = 2, kLevelsSeen = 14;
 // Where each family begins.
 struct Layout {
   Families f;
-  uint32_t skipped = f.add(27), kind = f.add(10), moves = f.add(9), quantizer = f.add(4), motion = f.add(2 * 40);
+  uint32_t skipped = f.add(27), kind = f.add(10), moves = f.add(9), quantizer = f.add(5), motion = f.add(2 * 40);
   uint32_t pattern[4] = {f.add(3 * 9), f.add(6 * 64), f.add(3 * 16), f.add(3 * 4 * 14)};
   uint32_t found[7] = {f.add(kPlanes * 64 * kLevelsSeen),
                        f.add(kPlanes * 64 * kLevelsSeen),
@@ -49,6 +49,7 @@ struct Layout {
                       f.add(kPlanes * 16 * 64),          f.add(kPlanes * 16 * 16),
                       f.add(kPlanes * 16 * 16 * 8),      f.add(kPlanes * 16 * kLevelsSeen * kLevelsSeen)};
   uint32_t dc = f.add(3 * 32);
+  uint32_t quantizer_sign = f.add(1), quantizer_step = f.add(16);
 };
 inline constexpr Layout kLayout;
 

@@ -13,6 +13,7 @@
 
 #include "base/image.h"
 #include "base/kernels/block_kernels.h"
+#include "sim/block_contexts.h"
 #include "sim/packing_contexts.h"
 #include "sim/picture_syntax.h"
 
@@ -122,7 +123,7 @@ class PictureCoder {
       reset_dc();
       pattern(m);
     }
-    if (intra || m.pattern != 0) quantizer(m);
+    if ((intra || m.pattern != 0) && !quantizer(m)) return false;
     if (m.quantizer == 0) return false;
     for (int block = 0; block < 6; ++block) {
       *trace(block) = {};
@@ -167,11 +168,25 @@ class PictureCoder {
     return true;
   }
 
-  void quantizer(Macroblock& m) {
-    if (bit(kLayout.quantizer + (quantizer_ == 0 ? 1 : 0), m.quantizer != quantizer_ ? 1 : 0) != 0)
+  // False where it leaves its range.
+  bool quantizer(Macroblock& m) {
+    if (quantizer_ == 0) {
       quantizer_ = static_cast<uint8_t>(coder_.raw(5, m.quantizer));
+    } else if (bit(quantizer_context(), m.quantizer != quantizer_ ? 1 : 0) != 0) {
+      const bool falls = bit(kLayout.quantizer_sign, m.quantizer < quantizer_ ? 1 : 0) != 0;
+      const auto wanted = static_cast<uint32_t>(std::abs(m.quantizer - quantizer_) - 1);
+      const int step = 1 + static_cast<int>(number(kLayout.quantizer_step, wanted));
+      const int changed = falls ? quantizer_ - step : quantizer_ + step;
+      if (changed < 1 || changed > 31) return false;
+      quantizer_ = static_cast<uint8_t>(changed);
+      has_changed_ = true;
+    } else {
+      has_changed_ = false;
+    }
     m.quantizer = quantizer_;
+    return true;
   }
+  uint32_t quantizer_context() const { return kLayout.quantizer + (has_changed_ ? 1 : 0); }
 
   // ---- Blocks ------------------------------------------------------------------------------------------------------
 
@@ -185,14 +200,15 @@ class PictureCoder {
   }
   bool is_first_row(int block) const { return row_ == 0 && (block >= 4 || block < 2); }
 
-  SurfaceMeans& surface_of(int block) {
+  uint32_t surface_at(int block) const {
     const int x = column_ * 16 + (block < 4 ? (block & 1) * 8 + 4 : 8);
     const int y = row_ * 16 + (block < 4 ? (block >> 1) * 8 + 4 : 8);
     uint32_t surface = 0;
     if (surface_.width > 0)
       surface = surface_.row(std::min(y, surface_.height - 1))[std::min(x, surface_.width - 1)] % kSurfaces;
-    return learned_.surfaces[surface * kPlanes + (block < 4 ? 0 : 1)];
+    return surface;
   }
+  SurfaceMeans& surface_of(int block) { return learned_.surfaces[surface_at(block) * kPlanes + (block < 4 ? 0 : 1)]; }
 
   // Contexts of a block's bit of the pattern, of which the bits of the blocks before are known.
   std::array<uint32_t, 4> pattern_at(int block, uint32_t pattern) {
@@ -228,99 +244,11 @@ class PictureCoder {
     m.dc[block] = static_cast<int16_t>(dc_[plane]);
   }
 
-  // What is known of a block's levels before they are coded.
-  struct Expected {
-    const BlockTrace* left;
-    const BlockTrace* above;
-    const BlockTrace* other;  // of Cr: Cb's
-    const SurfaceMeans* surface;
-    uint32_t near[64];    // of left and above, by zigzag position
-    uint32_t rest[64];    // near of all positions behind
-    uint32_t counts = 0;  // theirs
-  };
-
   Expected expected(int block) {
-    Expected e;
-    e.left = trace(block, -1);
-    e.above = is_first_row(block) ? &nothing_ : trace(block, 0, -1);
-    e.other = block == 5 ? trace(4) : e.left;
-    e.surface = &surface_of(block);
-    e.counts = e.left->count + e.above->count;
-    uint32_t sum[64];
-    for (size_t k = 0; k < 64; ++k) sum[kNaturalFromZigzag[k]] = e.left->size[k] + e.above->size[k];
-    for (size_t k = 0; k < 64; ++k) {
-      const size_t n = kNaturalFromZigzag[k], u = n % 8, v = n / 8;
-      e.near[k] = 2 * sum[n] + (u > 0 ? sum[n - 1] : 0) + (u < 7 ? sum[n + 1] : 0) + (v > 0 ? sum[n - 8] : 0) +
-                  (v < 7 ? sum[n + 8] : 0);
-    }
-    uint32_t rest = 0;
-    for (size_t k = 64; k-- > 0; rest += e.near[k]) e.rest[k] = rest;
-    return e;
+    const BlockTrace& left = *trace(block, -1);
+    return expect(left, is_first_row(block) ? nothing_ : *trace(block, 0, -1), block == 5 ? *trace(4) : left,
+                  surface_of(block));
   }
-
-  // |levels| around a position in this block, those already coded.
-  static uint32_t inside(const uint8_t* natural, size_t n) {
-    const size_t u = n % 8, v = n / 8;
-    uint32_t sum = 0;
-    if (u > 0) sum += 2u * natural[n - 1];
-    if (v > 0) sum += 2u * natural[n - 8];
-    if (u > 0 && v > 0) sum += natural[n - 9];
-    if (u > 1) sum += natural[n - 2];
-    if (v > 1) sum += natural[n - 16];
-    if (u > 0 && v < 7) sum += natural[n + 7];
-    if (u < 7 && v > 0) sum += natural[n - 7];
-    return sum;
-  }
-
-  // A position of a block, and what is known there.
-  struct Spot {
-    uint32_t plane, kind, k, pk;
-    uint32_t near, in, mean;
-    uint32_t count = 0, run = 0, last_size = 0;  // of the levels before
-  };
-
-  Spot spot_at(const Expected& e, int block, uint32_t k, const uint8_t* natural) const {
-    Spot s;
-    s.plane = block < 4 ? 0 : 1;
-    s.kind = static_cast<uint32_t>(plane_of(block));
-    s.k = k;
-    s.pk = s.plane * 64 + k;
-    s.near = level_of(e.near[k], 13);
-    s.in = level_of(inside(natural, kNaturalFromZigzag[k]), 13);
-    s.mean = level_of(e.surface->mean[k] / 4, 13) + (e.surface->seen > 3 ? 2 : 0);
-    return s;
-  }
-
-  // Contexts: of whether there is a level here; whether it is the last, `count` with it; whether it is above `found`.
-  std::array<uint32_t, 7> found_at(const Expected& e, const Spot& s) const {
-    return {kLayout.found[0] + s.pk * kLevelsSeen + s.near,
-            kLayout.found[1] + s.pk * kLevelsSeen + s.in,
-            kLayout.found[2] + ((s.plane * kLevelsSeen + s.near) * kLevelsSeen + s.in) * 8 + std::min(s.k / 4, 7u),
-            kLayout.found[3] + s.pk * 16 + s.mean,
-            kLayout.found[4] + ((s.plane * 16 + std::min(s.k, 30u) / 2) * 8 + std::min(s.count, 7u)) * 8 +
-                std::min(s.run, 7u),
-            kLayout.found[5] + s.pk * kLevelsSeen + level_of(e.counts, 13),
-            kLayout.found[6] + (s.kind * 64 + s.k) * 16 + std::min<uint32_t>(e.other->size[s.k], 3) * 4 +
-                std::min<uint32_t>(e.above->size[s.k], 3)};
-  }
-  std::array<uint32_t, 5> last_at(const Expected& e, const Spot& s, uint32_t count) const {
-    const uint32_t around = level_of(e.counts, 13);
-    return {kLayout.last[0] + s.pk * 8 + std::min(count, 7u), kLayout.last[1] + s.pk * kLevelsSeen + around,
-            kLayout.last[2] + (s.plane * 32 + std::min(count, 31u)) * kLevelsSeen + around,
-            kLayout.last[3] + s.pk * 16 + s.mean, kLayout.last[4] + s.pk * kLevelsSeen + level_of(e.rest[s.k] / 8, 13)};
-  }
-  std::array<uint32_t, 6> size_at(const Spot& s, uint32_t found) const {
-    const uint32_t pj = s.plane * 16 + found;
-    return {kLayout.size[0] + pj * kLevelsSeen + s.near,
-            kLayout.size[1] + pj * kLevelsSeen + s.in,
-            kLayout.size[2] + pj * 64 + s.k,
-            kLayout.size[3] + pj * 16 + s.mean,
-            kLayout.size[4] + (pj * 16 + std::min(s.k / 2, 15u)) * 8 + std::min(s.last_size, 3u) * 2 +
-                (s.count > 2 ? 1 : 0),
-            kLayout.size[5] + (pj * kLevelsSeen + s.near) * kLevelsSeen + s.in};
-  }
-  static size_t last_set(const Spot& s) { return kSetLast + s.plane * 16 + std::min(s.k, 15u); }
-  static size_t size_set(const Spot& s, uint32_t found) { return kSetSize + s.plane * 4 + std::min(found - 1, 3u); }
 
   void levels(Macroblock& m, int block, uint32_t first) {
     const Expected e = expected(block);
@@ -380,12 +308,16 @@ class PictureCoder {
 
   void price_kinds() {
     const BitMixer::Price skipped = price(skipped_context()), kind = price(kLayout.kind + around(is_intra));
-    const BitMixer::Price moving = price(kLayout.moves + around(moves));
+    const BitMixer::Price moving = price(kLayout.moves + around(moves)), changes = price(quantizer_context());
+    const BitMixer::Price one_step = price(kLayout.quantizer_step);
+    constexpr uint32_t kSign = 256;
     prices_here() = {whole(skipped.of[1]),
                      whole(skipped.of[0] + kind.of[0]),
                      whole(skipped.of[0] + kind.of[1]),
                      whole(moving.of[0]),
                      whole(moving.of[1]),
+                     whole(changes.of[0]),
+                     whole(changes.of[1] + one_step.of[0] + kSign),
                      {}};
   }
 
@@ -419,10 +351,29 @@ class PictureCoder {
     }
   }
 
-  // Of a block that is left out.
+  // Of a block that is left out. Among others that are, too, all of a surface cost nearly the same: those of the last
+  // kAgeOfPrices macroblocks are good enough, and most blocks of most pictures are such ones.
   void price_block(int block) {
+    constexpr int kAgeOfPrices = 24;
     const uint8_t natural[64] = {};
-    price_zeros(expected(block), block, 0, natural, 0, 0);
+    if (!is_alone(block)) return price_zeros(expected(block), block, 0, natural, 0, 0);
+    if (alone_.empty()) alone_.resize(size_t{3} * kSurfaces);
+    Alone& known = alone_[static_cast<size_t>(plane_of(block)) * kSurfaces + surface_at(block)];
+    mpeg1::BlockPrices& to = prices_here().blocks[block];
+    const int here = row_ * columns_ + column_;
+    if (known.made < 0 || here - known.made > kAgeOfPrices) {
+      price_zeros(expected(block), block, 0, natural, 0, 0);
+      known = {here, to};
+    }
+    const uint16_t left_out = to.left_out, coded = to.coded;
+    to = known.prices;
+    to.left_out = left_out;
+    to.coded = coded;
+  }
+  // No levels in the blocks beside.
+  bool is_alone(int block) {
+    const uint32_t above = is_first_row(block) ? 0 : trace(block, 0, -1)->count;
+    return trace(block, -1)->count + above + (block == 5 ? trace(4)->count : 0) == 0;
   }
   void price_pattern(int block, const std::array<uint32_t, 4>& contexts) {
     const BitMixer::Price coded = price(contexts, kSetPattern);
@@ -430,16 +381,7 @@ class PictureCoder {
     prices_here().blocks[block].coded = whole(coded.of[1]);
   }
 
-  void learn(int block) {
-    SurfaceMeans& s = surface_of(block);
-    const BlockTrace& own = *trace(block);
-    const int step = 65536 / (s.seen + 2);
-    s.coded = static_cast<uint16_t>(s.coded + (((own.count > 0 ? 65535 : 0) - s.coded) * int64_t{step} >> 16));
-    for (size_t k = 0; k < 64; ++k)
-      s.mean[k] =
-          static_cast<uint16_t>(s.mean[k] + ((64 * std::min<int>(own.size[k], 200) - s.mean[k]) * int64_t{step} >> 16));
-    if (s.seen < 40) ++s.seen;
-  }
+  void learn(int block) { learn_from(*trace(block), surface_of(block)); }
 
   Coder& coder_;
   Learned& learned_;
@@ -449,9 +391,15 @@ class PictureCoder {
   mpeg1::MacroblockPrices* prices_;
   size_t next_token_ = 0;
   uint8_t quantizer_ = 0;
+  bool has_changed_ = false;
   mpeg1::MotionVector predicted_;
   int dc_[3] = {128, 128, 128};
   std::vector<BlockTrace> traces_[3];
+  struct Alone {
+    int made = -1;  // at this macroblock
+    mpeg1::BlockPrices prices;
+  };
+  std::vector<Alone> alone_;  // of each plane and surface; empty until it is needed
   BlockTrace nothing_;
 };
 

@@ -22,7 +22,7 @@ namespace pac::bench {
 namespace {
 
 constexpr const char* kFence = "fence";
-constexpr const char* kMoving = "+moving";
+constexpr const char *kMoving = "+moving", *kLights = "+lights";
 
 Result<RgbaImage> decode_picture(std::span<const uint8_t> bytes) {
   if (bytes.size() < 2 || bytes[0] != 0xFF || bytes[1] != 0xD8) return decode_rgba(bytes);
@@ -64,6 +64,14 @@ sim::SceneSet fence() {
   return sim::scene_set_from(builder.take());
 }
 
+sim::Transforms transforms_at(const NamedScene& scene, int frame) {
+  if (!scene.moves && !scene.has_moving_lights) return sim::transforms_of(scene.set.fine);
+  sim::Transforms transforms;
+  if (scene.moves) transforms = scene.builtin->part_motion(frame, scene.set.parts);
+  if (scene.has_moving_lights) sim::add_light_transforms(frame, scene.set.fine.lights.size(), transforms);
+  return transforms;
+}
+
 double ms_of(const timeval& time) {
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
 }
@@ -102,8 +110,14 @@ raster::Camera NamedScene::camera(int frame, float aspect) const {
 NamedScene load_scene(const std::string& name) {
   NamedScene scene;
   scene.name = name;
-  scene.moves = name.ends_with(kMoving);
-  const std::string plain = scene.moves ? name.substr(0, name.size() - std::strlen(kMoving)) : name;
+  std::string plain = name;
+  const auto ends_with = [&plain](const char* suffix) {
+    if (!plain.ends_with(suffix)) return false;
+    plain.resize(plain.size() - std::strlen(suffix));
+    return true;
+  };
+  scene.has_moving_lights = ends_with(kLights);
+  scene.moves = ends_with(kMoving);
   scene.builtin = sim::find_scene(plain);
   if (scene.builtin != nullptr)
     scene.set = scene.builtin->build(1);
@@ -114,6 +128,7 @@ NamedScene load_scene(const std::string& name) {
     std::exit(1);
   }
   if (scene.moves) sim::move_parts(scene.set);
+  if (scene.has_moving_lights) sim::move_lights(scene.set.fine);
   return scene;
 }
 
@@ -129,18 +144,14 @@ Sequence draw(NamedScene& scene, const std::string& split_name, int frames, int 
   }
   out.samples = split.low.samples;
   out.differs_in_light = split.differs_in_light();
-  if (scene.moves) {
-    const sim::Transforms start = scene.builtin->part_motion(0, scene.set.parts);
-    if (!sim::move_objects(start, scene.set.fine).ok()) std::exit(1);
-  }
+  if (!sim::move_objects(transforms_at(scene, 0), scene.set.fine).ok()) std::exit(1);
   sim::FrameRenderer renderer = need(
       sim::FrameRenderer::create(scene.set, split, false, out.width, out.height, 1, best_isa()), scene.name.c_str());
   out.low = renderer.low_scene();
   out.resident_model_bytes = sim::serialize_model(out.low, split.low.texture).size();
   const float aspect = static_cast<float>(out.width) / static_cast<float>(out.height);
   for (int i = 0; i < frames; ++i) {
-    if (scene.moves && !sim::move_objects(scene.builtin->part_motion(i, scene.set.parts), scene.set.fine).ok())
-      std::exit(1);
+    if (!sim::move_objects(transforms_at(scene, i), scene.set.fine).ok()) std::exit(1);
     const raster::Camera camera = scene.camera(i, aspect);
     out.shots.push_back({camera, need(renderer.render(scene.set, camera, true), scene.name.c_str())});
   }

@@ -27,11 +27,12 @@ struct NamedScene {
   sim::SceneSet set;
   const sim::BuiltinScene* builtin = nullptr;  // null where it came from a file or is `fence`
   bool moves = false;                          // its parts are objects that move
+  bool has_moving_lights = false;
 
   raster::Camera camera(int frame, float aspect) const;
 };
 
-// A built-in scene, NAME+moving for one whose parts move, the path of a model, or `fence`: hundreds of bars thinner
+// A built-in scene, NAME+moving for one whose parts move, NAME+lights (of any) for one whose lights go round, the path of a model, or `fence`: hundreds of bars thinner
 // than a pixel before textured ground, where the client's polygons say little of what H looks like.
 NamedScene load_scene(const std::string& name);
 

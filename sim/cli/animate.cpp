@@ -1,4 +1,5 @@
 // `pac animate`: a sequence through both arms.
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -13,9 +14,9 @@ namespace pac::cli {
 namespace {
 
 struct Request {
-  std::string scene, out;
+  std::string scene, out, foreground;
   int first = 0, bit_rate_bps = 0;
-  bool moving = false;
+  bool moving = false, moving_lights = false;
   sim::AnimationOptions animation;
 };
 
@@ -46,6 +47,14 @@ void declare_video(Options& options, Request& request) {
                "--bit-rate: that the full bucket takes to run dry (1)");
   options.integer("--gop", "N", video.key_interval, 0, 132,
                   "pictures from one that stands alone to the next, 0: the first only (132; --bit-rate: 0)");
+  options.choice<bool>("--adapt", video.adapts_to_texture, {{"off", false}, {"texture", true}},
+                       "mpeg1: texture: polygon-assisted pictures that stand alone are quantized finer where H is "
+                       "smooth, coarser where its texture hides errors (off)");
+  options.text(
+      "--foreground", "NAMES", request.foreground,
+      "mpeg1: materials, joined by commas, or `moving` objects, that the polygon-assisted arm quantizes finer");
+  options.real("--worth", "W", video.foreground.worth, 1.0 / 16, 16,
+               "--foreground: how many times an error there counts; below 1: less than elsewhere (4)");
   options.choice<mpeg1::Effort>(
       "--effort", video.effort,
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
@@ -63,6 +72,8 @@ void declare(Options& options, Request& request) {
   options.integer("--fps", "F", request.animation.frames_per_second, 1, 60, "frames a second (20, as Table I)");
   options.choice<bool>("--objects", request.moving, {{"still", false}, {"moving", true}},
                        "moving: things move, too (a glTF file's animation: moving; room, cubes: still)");
+  options.choice<bool>("--lights", request.moving_lights, {{"still", false}, {"moving", true}},
+                       "moving: the lights of a lit scene go round the vertical through the origin (still)");
   options.text("--split", "NAMES", render.split,
                "texture, tessellation, shading, antialiasing, lighting, or several joined by commas (the scene's own)");
   options.choice<VideoCodec>("--codec", request.animation.codec,
@@ -89,6 +100,19 @@ void declare(Options& options, Request& request) {
   options.choice<int>("--samples", render.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "a pixel, of an antialiased side (16)");
   options.text("-o|--output", "DIR", request.out, "streams and sequences go there");
+}
+
+// "tartan,moving" taken apart.
+void read_foreground(const std::string& names, sim::Foreground& foreground) {
+  for (size_t at = 0; at < names.size();) {
+    const size_t comma = std::min(names.find(',', at), names.size());
+    const std::string name = names.substr(at, comma - at);
+    if (name == "moving")
+      foreground.moving = true;
+    else if (!name.empty())
+      foreground.materials.push_back(name);
+    at = comma + 1;
+  }
 }
 
 double kilobits_a_second(uint64_t bytes, const Request& request) {
@@ -223,6 +247,11 @@ int run_animate(Args args) {
     return options.usage_error("--buffer says nothing without --bit-rate");
   if (options.given("--bit-rate") && animation.codec != sim::VideoCodec::mpeg1)
     return options.usage_error("--bit-rate needs --codec mpeg1");
+  if (options.given("--foreground") && animation.codec != sim::VideoCodec::mpeg1)
+    return options.usage_error("--foreground needs --codec mpeg1");
+  if (options.given("--worth") && !options.given("--foreground"))
+    return options.usage_error("--worth says nothing without --foreground");
+  read_foreground(request.foreground, animation.video.foreground);
   if (options.given("--prediction")) animation.still_prediction = animation.video.prediction;
   if (animation.codec == sim::VideoCodec::mjpeg && animation.still_prediction == sim::Prediction::block)
     return options.usage_error("--prediction block needs --codec mpeg1");
@@ -238,6 +267,12 @@ int run_animate(Args args) {
     return options.usage_error("--objects moving: nothing in this scene can move");
   if (!options.given("--objects")) request.moving = source->builtin == nullptr && source->can_move();
   if (request.moving && source->builtin != nullptr) sim::move_parts(source->set);
+  const size_t n_moved = source->set.fine.objects.size();
+  const size_t n_lights = request.moving_lights ? source->set.fine.lights.size() : 0;
+  if (request.moving_lights && (n_lights == 0 || !sim::has_lit_materials(source->set) ||
+                                animation.render.split.find("tessellation") != std::string::npos))
+    return options.usage_error("--lights moving: the scene must be lit by lights, and its split not be tessellation");
+  if (request.moving_lights) sim::move_lights(source->set.fine);
   if (animation.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
     sim::add_coarse_model(source->set);
   animation.render.threads = animation.coding.threads = options.threads;
@@ -260,9 +295,14 @@ int run_animate(Args args) {
   framed.set.parts = source->set.parts;
   framed.set.fine.mesh = source->set.fine.mesh;
   framed.set.fine.objects = source->set.fine.objects;
-  if (request.moving)
+  if (request.moving || request.moving_lights)
     animation.objects = [&](int frame) {
-      return framed.transforms(request.first + frame, animation.frames_per_second);
+      const int number = request.first + frame;
+      sim::Transforms all =
+          request.moving ? framed.transforms(number, animation.frames_per_second) : sim::transforms_of(framed.set.fine);
+      all.resize(n_moved);
+      sim::add_light_transforms(number, n_lights, all);
+      return all;
     };
   const auto path = [&](int frame, float aspect) { return framed.camera(request.first + frame, aspect); };
   const auto result = sim::run_animation(std::move(source->set), path, animation, sink);
