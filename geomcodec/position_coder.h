@@ -237,21 +237,18 @@ bool PositionCoder<Coder>::code_choice(const Stencil& stencil, const Prediction&
                                        std::span<Position> positions, uint32_t v) {
   PackedPosition candidate[kChoices + 1];  // one more is written before it is dropped
   size_t n = 1;                            // candidate[1 .. n - 1]
-  const auto add = [&](const int32_t(&at)[3]) {
-    Position position;
-    for (size_t axis = 0; axis < 3; ++axis) position[axis] = static_cast<uint16_t>(std::clamp(at[axis], 0, mask_));
-    candidate[n] = PackedPosition(position);
+  const auto add = [&](PackedPosition position) {
+    candidate[n] = position;
     bool is_new = n < kChoices;
-    for (size_t i = 1; i < n; ++i) is_new = is_new & (candidate[i] != candidate[n]);
+    for (size_t i = 1; i < n; ++i) is_new = is_new & (candidate[i] != position);
     n += is_new ? 1 : 0;
   };
-  add(prediction.at);
+  Position predicted;  // clamped already
+  for (size_t axis = 0; axis < 3; ++axis) predicted[axis] = static_cast<uint16_t>(prediction.at[axis]);
+  add(PackedPosition(predicted));
   for (int i = 0; i < stencil.n_parallelograms; ++i) {
     const Stencil::Parallelogram& p = stencil.parallelogram[i];
-    const PackedPosition sides = known_[p.side_1].at + known_[p.side_2].at, opposite = known_[p.opposite].at;
-    int32_t at[3];
-    for (size_t axis = 0; axis < 3; ++axis) at[axis] = sides.field(axis) - opposite.field(axis);
-    add(at);
+    add((known_[p.side_1].at + known_[p.side_2].at).less_clamped(known_[p.opposite].at, mask_));
   }
   uint32_t choice = 0;
   if constexpr (!Coder::kDecodes) {

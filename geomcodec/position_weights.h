@@ -83,6 +83,19 @@ class PackedPosition {
     return *this;
   }
   PackedPosition operator+(PackedPosition other) const { return other += *this; }
+  // *this (a sum of two positions) less a position, each coordinate clamped to 0..highest (2^bits - 1). Fields start
+  // from 2^17, so that none borrows from the next: 2^17 - 65535 .. 2^17 + 131070 fit 21 bits. Without the 2^17 a field
+  // has a bit above `highest` if and only if it is outside.
+  PackedPosition less_clamped(PackedPosition position, int32_t highest) const {
+    constexpr uint64_t kUnits = uint64_t{1} | uint64_t{1} << kBits | uint64_t{1} << 2 * kBits;
+    PackedPosition result;
+    result.fields_ = (fields_ + (kUnits << 17) - position.fields_) ^ kUnits << 17;
+    if ((result.fields_ & ~(kUnits * static_cast<uint64_t>(highest))) == 0) return result;
+    Position clamped;
+    for (size_t axis = 0; axis < 3; ++axis)
+      clamped[axis] = static_cast<uint16_t>(std::clamp(field(axis) - position.field(axis), 0, highest));
+    return PackedPosition(clamped);
+  }
   bool operator==(const PackedPosition&) const = default;
 
  private:
