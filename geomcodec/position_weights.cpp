@@ -47,14 +47,16 @@ class Fit {
 
 }  // namespace
 
-PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Position> positions) {
+PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Stencil> first,
+                            std::span<const Position> positions) {
   Fit fit[PositionWeights::kClasses];
   std::vector<KnownPosition> known;
   known.reserve(positions.size());
   for (const Position& position : positions) known.push_back({PackedPosition(position), 0});
-  Stencil stencil;
+  Stencil found;
   for (uint32_t v = 0; v < topology.n_vertices; ++v) {
-    stencils.get(v, true, stencil);
+    if (v >= first.size()) stencils.get(v, true, found);
+    const Stencil& stencil = v < first.size() ? first[v] : found;
     if (stencil.n_parallelograms > 0)
       fit[PositionWeights::class_of(stencil)].add(features_of(stencil, known), positions[v]);
   }

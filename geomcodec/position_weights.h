@@ -132,8 +132,10 @@ inline Features features_of(const Stencil& stencil, std::span<const KnownPositio
   return features;
 }
 
-// The encoder's choices, for positions in coded order.
-PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Position> positions);
+// The encoder's choices, for positions in coded order. first: stencils (with twists) of the first vertices, as many as
+// the caller has.
+PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Stencil> first,
+                            std::span<const Position> positions);
 // After how many vertices the steps from vertex to vertex repeat, if most of them do; else 0.
 uint32_t find_period(std::span<const Position> positions);
 

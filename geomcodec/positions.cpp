@@ -15,19 +15,44 @@ size_t windows_for(size_t n_positions) {
   return n_positions <= kSmall ? 1 : kWindows;
 }
 
-// The vertices of `n_windows` windows, or all of them as one.
+// Where window `window` of `n_windows` begins and ends; the only one holds everything.
+struct Window {
+  size_t begin, end;
+  Window(size_t n_positions, size_t window, size_t n_windows)
+      : begin(n_positions * window / n_windows),
+        end(n_windows == 1 ? n_positions : std::min(begin + kWindow, n_positions)) {}
+};
+
+// The stencils of all vertices in the windows, in order: at most kSmall, which every trial then reads.
+std::vector<Stencil> stencils_of_windows(const Stencils& stencils, size_t n_positions, size_t n_windows) {
+  std::vector<Stencil> sampled;
+  sampled.reserve(kSmall);
+  for (size_t i = 0; i < n_windows; ++i) {
+    const Window window(n_positions, i, n_windows);
+    for (size_t v = window.begin; v < window.end; ++v)
+      stencils.get(static_cast<uint32_t>(v), true, sampled.emplace_back());
+  }
+  return sampled;
+}
+
+// The vertices of `n_windows` windows, or all of them as one. sampled: their stencils, or none where the coder is to
+// find them.
 std::vector<uint8_t> encode_windows(const Topology& topology, const Stencils& stencils,
-                                    std::vector<Position>& positions, size_t n_windows, PositionWeights weights,
-                                    int bits, bool trained) {
+                                    std::span<const Stencil> sampled, std::vector<Position>& positions,
+                                    size_t n_windows, PositionWeights weights, int bits, bool trained) {
   RangeEncoder coder;
   code_weights(coder, weights);
   PositionCoder<RangeEncoder> position_coder(topology, stencils, coder, weights, bits, trained);
-  size_t v = 0;
-  for (size_t window = 0; window < n_windows; ++window) {
-    const size_t begin = positions.size() * window / n_windows;
-    const size_t end = n_windows == 1 ? positions.size() : std::min(begin + kWindow, positions.size());
-    for (; v < begin; ++v) position_coder.skip(positions[v]);
-    for (; v < end; ++v) position_coder.code(static_cast<uint32_t>(v), positions);
+  size_t v = 0, n_coded = 0;
+  for (size_t i = 0; i < n_windows; ++i) {
+    const Window window(positions.size(), i, n_windows);
+    for (; v < window.begin; ++v) position_coder.skip(positions[v]);
+    for (; v < window.end; ++v) {
+      if (sampled.empty())
+        position_coder.code(static_cast<uint32_t>(v), positions);
+      else
+        position_coder.code(static_cast<uint32_t>(v), sampled[n_coded++], positions);
+    }
   }
   return coder.finish();
 }
@@ -39,8 +64,9 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
   std::vector<Position> positions(given.begin(), given.end());
   const size_t n_windows = windows_for(positions.size());
   const size_t sample = n_windows == 1 ? positions.size() : n_windows * kWindow;
+  const std::vector<Stencil> sampled = stencils_of_windows(stencils, positions.size(), n_windows);
   const auto encode_sample = [&](const PositionWeights& weights) {
-    return encode_windows(topology, stencils, positions, n_windows, weights, bits, trained);
+    return encode_windows(topology, stencils, sampled, positions, n_windows, weights, bits, trained);
   };
   // What all positions would take, in bits: what weights take is paid once.
   const auto estimate = [&](const std::vector<uint8_t>& bytes, const PositionWeights& weights) {
@@ -58,7 +84,9 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
     best_bytes = std::move(bytes);
     best = weights;
   };
-  if (const PositionWeights fitted = fit_weights(topology, stencils, positions); fitted.customized) try_weights(fitted);
+  const std::span<const Stencil> first(sampled.data(), n_windows == 1 ? sampled.size() : 0);
+  if (const PositionWeights fitted = fit_weights(topology, stencils, first, positions); fitted.customized)
+    try_weights(fitted);
   PositionWeights changed = best;
   changed.lifted = true;
   try_weights(changed);
@@ -70,7 +98,7 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
   if (changed.period != 0) try_weights(changed);
   if (best_bits > uint64_t{3} * static_cast<uint64_t>(bits) * positions.size()) best.raw = true;
   if (n_windows == 1 && !best.raw) return best_bytes;
-  return encode_windows(topology, stencils, positions, 1, best, bits, trained);
+  return encode_windows(topology, stencils, {}, positions, 1, best, bits, trained);
 }
 
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
