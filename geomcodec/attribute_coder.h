@@ -10,6 +10,7 @@
 #include "geomcodec/attributes.h"
 #include "geomcodec/prediction.h"
 #include "geomcodec/symbol_model.h"
+#include "geomcodec/table_coder.h"
 
 namespace pac::geomcodec {
 
@@ -47,6 +48,32 @@ struct ComponentModel {
   }
 };
 
+// The contexts of coding by tables: of the first component by basis and the neighbors' classes, of the others by the
+// largest class so far and the neighbors' classes; then of "the same as the sibling's".
+inline constexpr uint32_t kScaleHalves = 2 * kClasses + 1, kScales = kClasses + 1, kOtherClasses = 16;
+inline constexpr uint32_t kFirstContexts = 3 * kScaleHalves, kOtherContexts = kOtherClasses * kScales;
+inline constexpr uint32_t kSiblingContext = kFirstContexts + 3 * kOtherContexts;
+inline constexpr size_t kAttributeContexts = kSiblingContext + 2;
+static_assert(kAttributeContexts <= kMaxTableContexts);
+
+inline uint32_t table_context(uint32_t component, AttributeBasis basis, uint32_t scale, uint32_t other) {
+  const uint32_t founded = basis >= kFromTwo ? 2 : basis >= kFromExtension ? 1 : 0;
+  if (component == 0) return founded * kScaleHalves + scale;
+  return kFirstContexts + (component - 1) * kOtherContexts + std::min(other, kOtherClasses - 1) * kScales +
+         (scale + 1) / 2;
+}
+
+// A residual of a component by whichever coding the coder stands for. rank: how many components come before it.
+template <class Coder>
+[[gnu::always_inline]] inline int32_t code_component(Coder& coder, ComponentModel* model, uint32_t rank,
+                                                     AttributeBasis basis, uint32_t scale, uint32_t other,
+                                                     int32_t sign_before, int32_t residual) {
+  if constexpr (Coder::kTables)
+    return code_table_residual(coder, rank, table_context(rank, basis, scale, other), residual);
+  else
+    return model->code(coder, basis, scale, other, sign_before, residual);
+}
+
 // Mean of class_at(neighbor) in halves; without neighbors that of the vertex before.
 template <class ClassAt>
 uint32_t mean_class(uint32_t v, const Stencil& stencil, ClassAt class_at) {
@@ -60,7 +87,10 @@ class SiblingModel {
  public:
   template <class Coder>
   bool code(Coder& coder, bool same) {
-    return last_ = coder.bit(same_[last_ ? 1 : 0], same ? 1 : 0) != 0;
+    if constexpr (Coder::kTables)
+      return last_ = coder.symbol(0, kSiblingContext + (last_ ? 1 : 0), same ? 1 : 0) != 0;
+    else
+      return last_ = coder.bit(same_[last_ ? 1 : 0], same ? 1 : 0) != 0;
   }
 
  private:
@@ -69,16 +99,15 @@ class SiblingModel {
 };
 
 // Drives an attribute's coder, a class template with begin(vertices) and code(v, vertices), over all vertices.
-template <class AttributeCoder>
-std::vector<uint8_t> encode_attribute(AttributeCoder& attribute, RangeEncoder& coder,
-                                      std::span<const QuantizedVertex> given) {
+template <class AttributeCoder, class Coder>
+std::vector<uint8_t> encode_attribute(AttributeCoder& attribute, Coder& coder, std::span<const QuantizedVertex> given) {
   std::vector<QuantizedVertex> vertices(given.begin(), given.end());
   attribute.begin(vertices);
   for (uint32_t v = 0; v < vertices.size(); ++v) attribute.code(v, vertices);
   return coder.finish();
 }
-template <class AttributeCoder>
-Result<void> decode_attribute(AttributeCoder& attribute, RangeDecoder& coder, std::span<QuantizedVertex> vertices) {
+template <class AttributeCoder, class Coder>
+Result<void> decode_attribute(AttributeCoder& attribute, Coder& coder, std::span<QuantizedVertex> vertices) {
   attribute.begin(vertices);
   for (uint32_t v = 0; v < vertices.size(); ++v) {
     attribute.code(v, vertices);

@@ -22,16 +22,19 @@ struct AttributeMesh {
   uint32_t sibling_of(uint32_t vertex) const { return vertex < sibling.size() ? sibling[vertex] : kNone; }
 };
 
-std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, bool trained);
-std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits);
-std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits);
+std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, bool trained,
+                                   bool by_tables);
+std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
+                                    bool by_tables);
+std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
+                                      bool by_tables);
 
 // Fill the attribute of all vertices. byte_offset of failures counts from the first byte of the section.
 Result<void> decode_colors(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                           std::span<QuantizedVertex> vertices, bool trained);
+                           std::span<QuantizedVertex> vertices, bool trained, bool by_tables);
 Result<void> decode_normals(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                            std::span<QuantizedVertex> vertices, int bits);
+                            std::span<QuantizedVertex> vertices, int bits, bool by_tables);
 Result<void> decode_texcoords(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                              std::span<QuantizedVertex> vertices, int bits);
+                              std::span<QuantizedVertex> vertices, int bits, bool by_tables);
 
 }  // namespace pac::geomcodec

@@ -52,7 +52,7 @@ class ColorCoder {
 
   // trained: models start as training left them.
   ColorCoder(const AttributeMesh& mesh, Coder& coder, bool trained)
-      : mesh_(mesh), coder_(coder), models_(std::make_unique<Models>(trained)) {}
+      : mesh_(mesh), coder_(coder), models_(Coder::kTables ? nullptr : std::make_unique<Models>(trained)) {}
   const Models& models() const { return *models_; }
   void begin(std::span<QuantizedVertex> vertices);
   void code(uint32_t v, std::span<QuantizedVertex> vertices) {
@@ -182,6 +182,7 @@ void ColorCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, std::
   int32_t green = 0, before = 0;  // residuals
   uint32_t other = 0;
   HeldCoder<Coder> coder = coder_;
+  uint32_t rank = 0;
   for (const size_t channel : {size_t{1}, size_t{0}, size_t{2}, size_t{3}}) {
     uint8_t& level = vertices[v].color[channel];
     if (channel == 3 && constant_alpha_) {
@@ -192,7 +193,8 @@ void ColorCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, std::
     const int32_t prediction =
         std::clamp(spatial[channel] + (follows_green ? covariance_.expected(channel, green) : 0), 0, 255);
     int32_t residual = static_cast<int8_t>(static_cast<uint8_t>(level - prediction));  // modulo 256
-    residual = models_->channel[channel].code(coder, basis, scale, other, before, residual);
+    ComponentModel* model = models_ == nullptr ? nullptr : &models_->channel[channel];
+    residual = code_component(coder, model, rank++, basis, scale, other, before, residual);
     level = static_cast<uint8_t>(prediction + residual);
     other = std::max(other, class_of(residual));
     before = residual;

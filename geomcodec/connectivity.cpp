@@ -5,6 +5,7 @@
 
 #include "geomcodec/models.h"
 #include "geomcodec/open_edges.h"
+#include "geomcodec/table_coder.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -115,12 +116,35 @@ struct Source {
   }
 };
 
+// The symbols of the coding by tables: at a gate a step (of the first corner beyond it, in a face of as many corners as
+// the gate's), no face, or a face of another size; at other corners a step. Contexts by degrees, by whether the two
+// neighbors on the boundary are different vertices, by border or place.
+enum GateSymbol : uint32_t { kNoFace = 6, kOtherSize = 7 };
+constexpr uint32_t kLowDegrees = 6;  // 0..4 and more
+constexpr uint32_t kGateContexts = (kMaxDegree + 1) * kLowDegrees * 2 * 2 * 2;
+constexpr uint32_t kCornerContexts = 3 * kLowDegrees * kLowDegrees * 2;
+constexpr size_t kWalkContexts = kGateContexts + kCornerContexts;
+
+inline uint32_t gate_context(uint32_t degree_a, uint32_t degree_b, bool between, bool border, bool triangle) {
+  const uint32_t low = degree_b < kLowDegrees ? degree_b : kLowDegrees - 1;
+  return (((degree_a * kLowDegrees + low) * 2 + (between ? 1 : 0)) * 2 + (border ? 1 : 0)) * 2 + (triangle ? 1 : 0);
+}
+inline uint32_t corner_context(uint32_t place, uint32_t degree_left, uint32_t degree_right, bool between) {
+  const uint32_t left = degree_left < kLowDegrees ? degree_left : kLowDegrees - 1;
+  const uint32_t right = degree_right < kLowDegrees ? degree_right : kLowDegrees - 1;
+  return kGateContexts + ((place * kLowDegrees + left) * kLowDegrees + right) * 2 + (between ? 1 : 0);
+}
+
 template <class Coder>
 class Walk {
  public:
   Walk(Coder& coder, const ConnectivityHeader& header, Source* source, uint64_t expected_corners)
-      : coder_(coder), header_(header), source_(source), open_(topology_), models_(1) {
+      : coder_(coder), header_(header), source_(source), open_(topology_), models_(Coder::kTables ? 0 : 1) {
     topology_.all_triangles = header.n_corners == uint64_t{3} * header.n_faces;
+    topology_.all_quads = header.n_corners == uint64_t{4} * header.n_faces;  // until another face comes
+    open_.reserve(static_cast<uint32_t>(std::min<uint64_t>(header.n_vertices, expected_corners)));
+    if (!topology_.all_triangles)
+      topology_.face_first.reserve(1 + std::min<uint64_t>(header.n_faces, expected_corners));
     // What so many bytes usually hold; a regular mesh grows beyond it.
     resize(static_cast<uint32_t>(std::min<uint64_t>(header.n_corners, expected_corners)));
   }
@@ -131,6 +155,8 @@ class Walk {
       const uint32_t gate = open_.front();
       if (gate == kNone) {
         if (!code_seed()) return false;
+      } else if constexpr (Coder::kTables) {
+        if (!code_gate(gate)) return false;
       } else if (face_across(gate)) {
         if (!code_face(gate)) return false;
       }
@@ -173,6 +199,11 @@ class Walk {
   bool face_across(uint32_t gate);
   bool code_seed();
   bool code_face(uint32_t gate);
+  bool code_gate(uint32_t gate);
+  bool code_table_corner(uint32_t k, uint32_t place);
+  Step find_step(std::array<uint32_t, kOld>& candidate, uint32_t wanted);
+  bool add_corner(Step step, std::array<uint32_t, kOld>& candidate, uint32_t mesh_vertex);
+  uint32_t code_plain_number(uint32_t number);
   uint32_t code_size(uint32_t context);
   uint32_t code_size_across(uint32_t gate_size);
   bool code_corner(uint32_t k, Place place);
@@ -216,7 +247,10 @@ uint32_t Walk<Coder>::code_size(uint32_t context) {
   if (topology_.all_triangles) return 0;
   uint32_t wanted = 0;
   if constexpr (!Coder::kDecodes) wanted = source_->faces[source_->face].count - 3;
-  return code_number(coder_, models_[0].face_size[context], wanted);
+  if constexpr (Coder::kTables)
+    return code_plain_number(wanted);
+  else
+    return code_number(coder_, models_[0].face_size[context], wanted);
 }
 
 // Corners less 3 of the face across a gate: mostly those of the gate's own face.
@@ -241,8 +275,13 @@ bool Walk<Coder>::code_seed() {
   const uint64_t room = header_.n_corners - n_corners_;
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
   corners_.clear();
-  for (uint32_t k = 0; k < size_less_3 + 3; ++k)
-    if (!code_corner(k, kSeed)) return false;
+  for (uint32_t k = 0; k < size_less_3 + 3; ++k) {
+    if constexpr (Coder::kTables) {
+      if (!code_table_corner(k, 0)) return false;
+    } else {
+      if (!code_corner(k, kSeed)) return false;
+    }
+  }
   finish_face(kNone);
   return true;
 }
@@ -344,10 +383,148 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
   return true;
 }
 
+// A number as its length and bits, all raw.
+template <class Coder>
+uint32_t Walk<Coder>::code_plain_number(uint32_t number) {
+  const auto length = static_cast<int>(coder_.raw(6, static_cast<uint32_t>(std::bit_width(number))));
+  if (length < 2) return static_cast<uint32_t>(length);
+  uint32_t result = 1;
+  for (int left = std::min(length, 32) - 1; left > 0;) {
+    const int count = std::min(left, 16);
+    left -= count;
+    result = result << count | coder_.raw(count, number >> left & ((1u << count) - 1));
+  }
+  return result;
+}
+
+// The encoder's step to `wanted` (kNone: a new vertex), of which `candidate` holds the first two and receives the rest.
+template <class Coder>
+Step Walk<Coder>::find_step(std::array<uint32_t, kOld>& candidate, uint32_t wanted) {
+  if (wanted == kNone) return kNew;
+  if (wanted == candidate[kBefore]) return kBefore;
+  if (wanted == candidate[kAfter]) return kAfter;
+  if (candidate[kAfter] != kNone && open_.after(candidate[kAfter]) == wanted) return kAfterAfter;
+  if (candidate[kBefore] != kNone && open_.before(candidate[kBefore]) == wanted) return kBeforeBefore;
+  return kOld;
+}
+
+// The corner that a step leads to. False: corrupt.
+template <class Coder>
+bool Walk<Coder>::add_corner(Step step, std::array<uint32_t, kOld>& candidate, uint32_t mesh_vertex) {
+  uint32_t vertex = kNone, wanted = 0;
+  if constexpr (!Coder::kDecodes)
+    if (step == kOld) wanted = source_->coded_vertex[mesh_vertex];
+  switch (step) {
+    case kNew:
+      if (topology_.n_vertices == header_.n_vertices) return false;
+      vertex = topology_.n_vertices++;
+      open_.add_vertex();
+      if constexpr (!Coder::kDecodes) {
+        source_->coded_vertex[mesh_vertex] = vertex;
+        source_->order.vertex.push_back(mesh_vertex);
+      }
+      break;
+    case kAfterAfter:
+      if (candidate[kAfter] != kNone) vertex = open_.after(candidate[kAfter]);
+      break;
+    case kBeforeBefore:
+      if (candidate[kBefore] != kNone) vertex = open_.before(candidate[kBefore]);
+      break;
+    case kOld:
+      if (topology_.n_vertices > 0) {
+        const uint32_t newest = topology_.n_vertices - 1, age = code_plain_number(newest - wanted);
+        if (age <= newest) vertex = newest - age;
+      }
+      break;
+    case kBefore:
+    case kAfter:
+      vertex = candidate[step];
+      break;
+    case kSteps:
+      break;
+  }
+  corners_.push_back(vertex);
+  return vertex != kNone;
+}
+
+// A corner that is not the first beyond a gate in a face of the gate's size. place: first, middle, last.
+template <class Coder>
+bool Walk<Coder>::code_table_corner(uint32_t k, uint32_t place) {
+  if (coder_.failed()) return false;
+  std::array<uint32_t, kOld> candidate;
+  candidate.fill(kNone);
+  uint32_t left = 0, right = 0;
+  if (!corners_.empty()) {
+    candidate[kBefore] = open_.before(corners_.back());
+    candidate[kAfter] = open_.after(corners_.front());
+    left = degree(corners_.back());
+    right = degree(corners_.front());
+  }
+  uint32_t mesh_vertex = kNone, symbol = kNew;
+  if constexpr (!Coder::kDecodes) {
+    mesh_vertex = source_->mesh_vertex(k);
+    symbol = find_step(candidate, source_->coded_vertex[mesh_vertex]);
+  }
+  if (topology_.n_vertices > 0)
+    symbol = coder_.symbol(0, corner_context(place, left, right, candidate[kBefore] != candidate[kAfter]), symbol);
+  return symbol <= kOld && add_corner(static_cast<Step>(symbol), candidate, mesh_vertex);
+}
+
+// What lies across a gate, and the face if there is one.
+template <class Coder>
+bool Walk<Coder>::code_gate(uint32_t gate) {
+  const uint32_t a = start_of(gate), b = end_of(gate);
+  std::array<uint32_t, kOld> candidate;
+  candidate.fill(kNone);
+  candidate[kBefore] = open_.before(a);
+  candidate[kAfter] = open_.after(b);
+  const uint32_t gate_size = topology_.size_of_face_at(gate);
+  uint32_t symbol = kNoFace;
+  if constexpr (!Coder::kDecodes) {
+    EdgeIndex& edges = source_->edges;
+    if (edges.find(source_->order.vertex[b], source_->order.vertex[a], source_->face, source_->first_corner)) {
+      topology_.twin[gate] = n_corners_;
+      symbol = source_->faces[source_->face].count != gate_size
+                   ? uint32_t{kOtherSize}
+                   : find_step(candidate, source_->coded_vertex[source_->mesh_vertex(2)]);
+    }
+  }
+  symbol = coder_.symbol(0,
+                         gate_context(degree(a), degree(b), candidate[kBefore] != candidate[kAfter],
+                                      open_.at(a).has_border != 0, gate_size == 3),
+                         symbol);
+  if (symbol == kNoFace) {
+    open_.close(gate);
+    open_.at(a).has_border = open_.at(b).has_border = 1;
+    return true;
+  }
+  if (symbol > kOtherSize) return false;
+  topology_.twin[gate] = n_corners_;  // no longer open: the face adds the other side
+  const uint32_t size_less_3 = symbol == kOtherSize ? code_size(0) : gate_size - 3;
+  const uint64_t room = header_.n_corners - n_corners_;
+  if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
+  corners_.clear();
+  corners_.push_back(b);
+  corners_.push_back(a);
+  uint32_t k = 2;
+  if (symbol != kOtherSize) {
+    uint32_t mesh_vertex = kNone;
+    if constexpr (!Coder::kDecodes) mesh_vertex = source_->mesh_vertex(2);
+    if (!add_corner(static_cast<Step>(symbol), candidate, mesh_vertex)) return false;
+    ++k;
+  }
+  const uint32_t size = size_less_3 + 3;
+  for (; k < size; ++k)
+    if (!code_table_corner(k, k == 2 ? 0 : k + 1 < size ? 1 : 2)) return false;
+  finish_face(gate);
+  return true;
+}
+
 // corners_ becomes a face; its first edge is paired with the gate (kNone: a seed).
 template <class Coder>
 void Walk<Coder>::finish_face(uint32_t gate) {
   const uint32_t first = n_corners_, size = static_cast<uint32_t>(corners_.size());
+  if (size != 4) topology_.all_quads = false;
   make_room(first + size);
   std::copy_n(corners_.data(), size, topology_.corner_vertex.data() + first);
   n_corners_ += size;
@@ -358,8 +535,8 @@ void Walk<Coder>::finish_face(uint32_t gate) {
   ++n_faces_;
   if (gate != kNone) open_.pair(gate, first);
   for (uint32_t k = 0; k < size; ++k) {
-    const uint32_t from = corners_[k];
-    open_.add_edge(first + k, from, corners_[k + 1 < size ? k + 1 : 0]);
+    const uint32_t from = corners_[k], to = corners_[k + 1 < size ? k + 1 : 0];
+    open_.add_edge(first + k, from, to);
     uint8_t& n_around = open_.at(from).n_faces;
     n_around = static_cast<uint8_t>(n_around + (n_around < 255 ? 1 : 0));
   }
@@ -372,8 +549,31 @@ void Walk<Coder>::finish_face(uint32_t gate) {
 
 }  // namespace
 
+namespace {
+
+template <class Coder>
+CodedConnectivity encode_walk(Coder& coder, const ConnectivityHeader& header, Source& source) {
+  CodedConnectivity coded;
+  Walk<Coder> walk(coder, header, &source, header.n_corners);
+  PAC_ASSERT(walk.run());
+  coded.topology = walk.take();
+  coded.order = std::move(source.order);
+  coded.bytes = coder.finish();
+  return coded;
+}
+
+template <class Coder>
+Result<Topology> decode_walk(Coder& coder, const ConnectivityHeader& header, uint64_t n_bytes) {
+  Walk<Coder> walk(coder, header, nullptr, 4096 + 64 * n_bytes);
+  if (!walk.run()) return Failure{Error::corrupt, 0, "connectivity is damaged"};
+  if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "connectivity does not end where the header says"};
+  return walk.take();
+}
+
+}  // namespace
+
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      uint32_t n_vertices) {
+                                      uint32_t n_vertices, bool by_tables) {
   ConnectivityHeader header;
   header.n_faces = static_cast<uint32_t>(faces.size());
   std::vector<uint8_t> used(n_vertices);
@@ -383,23 +583,24 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
   }
   header.n_vertices = static_cast<uint32_t>(std::count(used.begin(), used.end(), uint8_t{1}));
 
-  CodedConnectivity coded;
-  RangeEncoder coder;
   Source source(indices, faces, n_vertices);
-  Walk<RangeEncoder> walk(coder, header, &source, header.n_corners);
-  PAC_ASSERT(walk.run());
-  coded.topology = walk.take();
-  coded.order = std::move(source.order);
-  coded.bytes = coder.finish();
-  return coded;
+  if (by_tables) {
+    TableEncoder coder(kWalkContexts);
+    return encode_walk(coder, header, source);
+  }
+  RangeEncoder coder;
+  return encode_walk(coder, header, source);
 }
 
-Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header) {
+Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header, bool by_tables,
+                                     uint64_t stream_bytes) {
+  if (by_tables) {
+    SymbolTables tables;
+    TableDecoder coder(bytes, kWalkContexts, tables);
+    return decode_walk(coder, header, stream_bytes);
+  }
   RangeDecoder coder(bytes);
-  Walk<RangeDecoder> walk(coder, header, nullptr, 4096 + 64 * uint64_t{bytes.size()});
-  if (!walk.run()) return Failure{Error::corrupt, 0, "connectivity is damaged"};
-  if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "connectivity does not end where the header says"};
-  return walk.take();
+  return decode_walk(coder, header, stream_bytes);
 }
 
 }  // namespace pac::geomcodec

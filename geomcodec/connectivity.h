@@ -21,19 +21,21 @@ struct WalkOrder {
   std::vector<uint32_t> vertex;        // per coded vertex: its number in the mesh; used ones only
 };
 
-// Walks `mesh` (already checked), coding as it goes.
+// Walks `mesh` (already checked), coding as it goes: the same walk by tables and not.
 struct CodedConnectivity {
   Topology topology;
   WalkOrder order;
   std::vector<uint8_t> bytes;
 };
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      uint32_t n_vertices);
+                                      uint32_t n_vertices, bool by_tables);
 
 struct ConnectivityHeader {
   uint32_t n_vertices = 0, n_faces = 0, n_corners = 0;  // vertices: those that faces use
 };
-// Arrays grow as faces are read, never past the header's counts. byte_offset of failures counts from bytes.data().
-Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header);
+// Arrays grow as faces are read, from what a stream of so many bytes usually holds, never past the header's counts.
+// byte_offset of failures counts from bytes.data().
+Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header, bool by_tables,
+                                     uint64_t stream_bytes);
 
 }  // namespace pac::geomcodec

@@ -22,6 +22,15 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
+// Version 4 is there for tables: without any it would be version 3.
+void parse_tables(ByteReader& reader, Header& header) {
+  constexpr uint32_t kMayBe =
+      1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
+  header.tables = reader.u8();
+  if (header.tables == 0 || (header.tables & ~kMayBe) != 0)
+    reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
+}
+
 void parse_grid(ByteReader& reader, uint8_t flags, Header& header) {
   header.position_bits = reader.u8();
   if (header.position_bits < 1 || header.position_bits > 16)
@@ -144,8 +153,9 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
                                   uint64_t& header_bytes) {
   const uint8_t flags = flags_of(header);
   std::vector<uint8_t> out(kMagic, kMagic + 3);
-  out.push_back(kVersion);
+  out.push_back(header.tables == 0 ? kVersion : kVersionWithTables);
   out.push_back(flags);
+  if (header.tables != 0) out.push_back(header.tables);
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
@@ -164,7 +174,9 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   ByteReader reader(bytes);
   for (const uint8_t expected : kMagic)
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
-  if (reader.u8() != kVersion && reader.ok()) return Failure{Error::unsupported, 3, "version of the stream is unknown"};
+  const uint8_t version = reader.u8();
+  if (version != kVersion && version != kVersionWithTables && reader.ok())
+    return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
     return Failure{Error::corrupt, 4, "flags contradict one another"};
@@ -174,6 +186,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.keeps_order = (flags & kKeepsOrder) != 0;
   header.constant_color = (flags & kConstantColor) != 0;
   header.trained = (flags & kTrained) != 0;
+  if (version == kVersionWithTables) parse_tables(reader, header);
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
   if ((flags & kHasFaceValues) != 0) parse_face_values(reader, header);
@@ -182,6 +195,9 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;
+  for (uint32_t i = 0; i < kSections; ++i)
+    if (header.by_tables(static_cast<Section>(i)) && !header.has(static_cast<Section>(i)))
+      reader.fail(Error::corrupt, "a section that is not there is coded by tables");
   for (uint32_t i = 0; i < kSections; ++i)
     if (header.has(static_cast<Section>(i))) end += header.section_bytes[i] = reader.count();
   const uint64_t checksum_offset = reader.position();
@@ -206,7 +222,7 @@ Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
   PAC_TRY(const ParsedStream parsed, parse_stream(bytes));
   const Header& header = parsed.header;
   StreamInfo info;
-  info.version = kVersion;
+  info.version = header.tables == 0 ? kVersion : kVersionWithTables;
   info.n_vertices = header.n_vertices();
   info.n_faces = header.n_faces;
   info.n_corners = header.n_corners;

@@ -11,7 +11,7 @@
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 3;
+inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4;
 
 enum Section : uint32_t {
   kConnectivity,
@@ -45,9 +45,11 @@ struct Header {
   uint32_t highest_material = 0;
   uint8_t color[4] = {255, 255, 255, 255};  // with constant_color: everyone's
   std::array<uint32_t, kSections> section_bytes = {};
+  uint8_t tables = 0;  // bit s: section s is coded by tables; only the first six but seams may be
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
+  bool by_tables(Section section) const { return (tables >> section & 1) != 0; }
   // Whether the fields above leave anything for a section to say.
   bool has(Section section) const;
 };

@@ -9,6 +9,7 @@
 #include "geomcodec/materials.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
+#include "geomcodec/table_positions.h"
 #include "geomcodec/vertices.h"
 
 namespace pac::geomcodec {
@@ -85,9 +86,11 @@ QuantizedVertex blank_vertex(const Header& header) {
 Result<void> decode_vertices(const ParsedStream& stream, const Topology& points, const Stencils& stencils,
                              const Seams& seams, QuantizedMesh& mesh) {
   const Header& header = stream.header;
-  auto positions =
-      decode_positions(stream.section[kPositions], points, stencils, header.n_points() + header.n_isolated_vertices,
-                       header.position_bits, header.trained);
+  const uint32_t n_positions = header.n_points() + header.n_isolated_vertices;
+  auto positions = header.by_tables(kPositions) ? decode_positions_by_tables(stream.section[kPositions], stencils,
+                                                                             n_positions, header.position_bits)
+                                                : decode_positions(stream.section[kPositions], points, stencils,
+                                                                   n_positions, header.position_bits, header.trained);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
@@ -102,15 +105,18 @@ Result<void> decode_attributes(const ParsedStream& stream, const AttributeMesh& 
                                QuantizedMesh& mesh) {
   const Header& header = stream.header;
   if (with_colors && header.has(kColors)) {
-    const auto done = decode_colors(stream.section[kColors], attributes, mesh.vertices, header.trained);
+    const auto done =
+        decode_colors(stream.section[kColors], attributes, mesh.vertices, header.trained, header.by_tables(kColors));
     if (!done) return at(done.failure(), stream.section_offset(kColors));
   }
   if (header.has(kNormals)) {
-    const auto done = decode_normals(stream.section[kNormals], attributes, mesh.vertices, header.normal_bits);
+    const auto done = decode_normals(stream.section[kNormals], attributes, mesh.vertices, header.normal_bits,
+                                     header.by_tables(kNormals));
     if (!done) return at(done.failure(), stream.section_offset(kNormals));
   }
   if (header.has(kTexcoords)) {
-    const auto done = decode_texcoords(stream.section[kTexcoords], attributes, mesh.vertices, header.texcoord_bits);
+    const auto done = decode_texcoords(stream.section[kTexcoords], attributes, mesh.vertices, header.texcoord_bits,
+                                       header.by_tables(kTexcoords));
     if (!done) return at(done.failure(), stream.section_offset(kTexcoords));
   }
   return {};
@@ -122,13 +128,18 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
   const Header& header = stream.header;
   const AttributeMesh attributes{points, stencils, seams.sibling};
   // Isolated vertices are a claim of the header until their positions are read: only as many as the faces have shown.
-  const bool together = header.has(kColors) && header.n_isolated_vertices <= header.n_used_vertices;
+  const bool tables = header.by_tables(kPositions);
+  const bool together = header.has(kColors) && header.by_tables(kColors) == tables &&
+                        header.n_isolated_vertices <= header.n_used_vertices;
   if (together) {
     mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
     VertexFailure failure;
-    if (!decode_positions_and_colors(stream.section[kPositions], stream.section[kColors], attributes,
-                                     header.position_bits, header.trained, mesh.vertices, failure))
-      return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
+    const std::span<const uint8_t> positions = stream.section[kPositions], colors = stream.section[kColors];
+    const bool done = tables ? decode_positions_and_colors_by_tables(positions, colors, attributes,
+                                                                     header.position_bits, mesh.vertices, failure)
+                             : decode_positions_and_colors(positions, colors, attributes, header.position_bits,
+                                                           header.trained, mesh.vertices, failure);
+    if (!done) return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {
     PAC_CHECK(decode_vertices(stream, points, stencils, seams, mesh));
   }
@@ -155,7 +166,8 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
   Topology points;
   if (header.has(kConnectivity)) {
     auto decoded =
-        decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners});
+        decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners},
+                            header.by_tables(kConnectivity), bytes.size());
     if (!decoded) return at(decoded.failure(), stream.section_offset(kConnectivity));
     points = std::move(*decoded);
   }

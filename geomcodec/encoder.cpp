@@ -8,8 +8,10 @@
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/mesh_check.h"
+#include "geomcodec/position_weights.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
+#include "geomcodec/table_positions.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -36,14 +38,14 @@ std::vector<uint32_t> corners_in_order(const QuantizedMesh& mesh, const WalkOrde
   return corners;
 }
 
-Walked walk(const QuantizedMesh& mesh) {
+Walked walk(const QuantizedMesh& mesh, bool by_tables) {
   Walked walked;
   const auto n_vertices = static_cast<uint32_t>(mesh.vertices.size());
   const Points points = find_points(mesh.vertices);
   std::vector<uint32_t> point_indices;
   point_indices.reserve(mesh.indices.size());
   for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
-  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, points.count);
+  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, points.count, by_tables);
   point_indices = {};  // memory is scarce: 12 bytes a triangle
   walked.points = std::move(connectivity.topology);
   walked.connectivity_bytes = std::move(connectivity.bytes);
@@ -116,12 +118,42 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
   return header;
 }
 
+// From so many vertices on a decoder's time shows, and what tables take is little beside the rest.
+constexpr size_t kManyVertices = 16384;
+
+bool wants_tables(const QuantizedMesh& mesh, Effort effort) {
+  if (mesh.faces.empty() || effort == Effort::best) return false;
+  return effort == Effort::fast || mesh.vertices.size() >= kManyVertices;
+}
+
+// Whether positions repeat, by rows or by parts, which only the other coding predicts.
+bool repeats(const Walked& walked) {
+  uint64_t n_seeds = 0;
+  for (uint32_t face = 0; face < walked.points.n_faces(); ++face) {
+    const uint32_t gate = walked.points.twin[walked.points.face_first[face]];
+    n_seeds += gate == kNone || walked.points.corner_face[gate] >= face ? 1 : 0;
+  }
+  constexpr uint64_t kSmallParts = 64;  // vertices
+  return n_seeds * kSmallParts > walked.points.n_vertices || find_period(positions_of(walked)) != 0;
+}
+
+void choose_tables(const Walked& walked, Effort effort, Header& header) {
+  for (const Section section : {kConnectivity, kPositions, kColors, kNormals, kTexcoords})
+    if (header.has(section)) header.tables = static_cast<uint8_t>(header.tables | 1u << section);
+  if (effort == Effort::balanced && repeats(walked))
+    header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
+  header.trained = header.trained && !header.by_tables(kPositions);
+}
+
 using Sections = std::array<std::vector<uint8_t>, kSections>;
 
 void encode_attributes(const Header& header, const AttributeMesh& mesh, const Walked& walked, Sections& sections) {
-  if (header.has(kColors)) sections[kColors] = encode_colors(mesh, walked.vertices, header.trained);
-  if (header.has(kNormals)) sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits);
-  if (header.has(kTexcoords)) sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits);
+  if (header.has(kColors))
+    sections[kColors] = encode_colors(mesh, walked.vertices, header.trained, header.by_tables(kColors));
+  if (header.has(kNormals))
+    sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits, header.by_tables(kNormals));
+  if (header.has(kTexcoords))
+    sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits, header.by_tables(kTexcoords));
 }
 
 // Positions over points, all else over vertices; without seams these are the same mesh.
@@ -129,8 +161,11 @@ void encode_vertices(const Header& header, const Walked& walked, Sections& secti
   if (!header.has(kPositions)) return;
   {
     const Stencils stencils(walked.points);
+    const std::vector<Position> positions = positions_of(walked);
     sections[kPositions] =
-        encode_positions(walked.points, stencils, positions_of(walked), header.position_bits, header.trained);
+        header.by_tables(kPositions)
+            ? encode_positions_by_tables(stencils, positions, header.position_bits)
+            : encode_positions(walked.points, stencils, positions, header.position_bits, header.trained);
     if (header.n_split_vertices == 0)
       return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
   }
@@ -144,8 +179,10 @@ void encode_vertices(const Header& header, const Walked& walked, Sections& secti
 
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
   PAC_CHECK(check_mesh(mesh));
-  Walked walked = walk(mesh);
-  const Header header = header_of(mesh, walked, options);
+  const bool by_tables = wants_tables(mesh, options.effort);
+  Walked walked = walk(mesh, by_tables);
+  Header header = header_of(mesh, walked, options);
+  if (by_tables) choose_tables(walked, options.effort, header);
   Sections sections;
   sections[kConnectivity] = std::move(walked.connectivity_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
@@ -177,7 +214,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
 QuantizedMesh reorder(const QuantizedMesh& mesh) {
   QuantizedMesh result;
   if (!check_mesh(mesh)) return result;
-  Walked walked = walk(mesh);
+  Walked walked = walk(mesh, false);
   result.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, result.origin);
   std::copy(mesh.step, mesh.step + 3, result.step);

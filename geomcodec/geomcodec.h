@@ -78,9 +78,14 @@ QuantizedMesh merge_equal_vertices(const QuantizedMesh& mesh);
 // texture coordinates if there are any.
 Mesh dequantize(const QuantizedMesh& mesh);
 
+// What an encoder trades for speed. fast: symbols by tables, in any mesh. balanced: by tables from 16,384 vertices on,
+// where a decoder's time shows. best: adaptive models everywhere, the fewest bytes.
+enum class Effort { fast, balanced, best };
+
 struct EncodeOptions {
   bool keep_order = false;     // vertices, faces and first corners come back in the order given, else as reorder() says
   bool trained_priors = true;  // models start as training on generated meshes left them: small meshes take 2-3 % less
+  Effort effort = Effort::balanced;
 };
 
 // What each part of an encoded mesh costs. They add up to the size of the stream.

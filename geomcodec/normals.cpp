@@ -23,7 +23,10 @@ template <class Coder>
 class NormalCoder {
  public:
   NormalCoder(const AttributeMesh& mesh, Coder& coder, int bits)
-      : mesh_(mesh), coder_(coder), m_((1 << (bits - 1)) - 1), models_(std::make_unique<Models>()) {}
+      : mesh_(mesh),
+        coder_(coder),
+        m_((1 << (bits - 1)) - 1),
+        models_(Coder::kTables ? nullptr : std::make_unique<Models>()) {}
   void begin(std::span<QuantizedVertex> /*vertices*/) {}
   void code(uint32_t v, std::span<QuantizedVertex> vertices);
 
@@ -132,7 +135,8 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
     const uint32_t scale =
         mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex].residual_class[i]}; });
     const int32_t residual =
-        models_->component[i].code(coder, basis, scale, other, before, wrapped(actual[i] - prediction));
+        code_component(coder, models_ == nullptr ? nullptr : &models_->component[i], static_cast<uint32_t>(i), basis,
+                       scale, other, before, wrapped(actual[i] - prediction));
     actual[i] = std::clamp(wrapped(prediction + residual), -m_, m_);
     memory_[v].off_faces[i] = static_cast<int16_t>(has_faces ? std::clamp(actual[i] - faces[i], -m_, m_) : 0);
     memory_[v].residual_class[i] = static_cast<uint8_t>(class_of(residual));
@@ -146,14 +150,26 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
 
 }  // namespace
 
-std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits) {
+std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
+                                    bool by_tables) {
+  if (by_tables) {
+    TableEncoder coder(kAttributeContexts);
+    NormalCoder<TableEncoder> normals(mesh, coder, bits);
+    return encode_attribute(normals, coder, vertices);
+  }
   RangeEncoder coder;
   NormalCoder<RangeEncoder> normals(mesh, coder, bits);
   return encode_attribute(normals, coder, vertices);
 }
 
 Result<void> decode_normals(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                            std::span<QuantizedVertex> vertices, int bits) {
+                            std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
+  if (by_tables) {
+    SymbolTables tables;
+    TableDecoder coder(bytes, kAttributeContexts, tables);
+    NormalCoder<TableDecoder> normals(mesh, coder, bits);
+    return decode_attribute(normals, coder, vertices);
+  }
   RangeDecoder coder(bytes);
   NormalCoder<RangeDecoder> normals(mesh, coder, bits);
   return decode_attribute(normals, coder, vertices);

@@ -27,6 +27,10 @@ class OpenEdges {
 
   // Corners below n_corners may be added.
   void resize(size_t n_corners) { next_.resize(n_corners); }
+  void reserve(size_t n_vertices) {
+    vertex_.reserve(n_vertices);
+    queue_.reserve(n_vertices);
+  }
   void add_vertex() { vertex_.emplace_back(); }
   Vertex& at(uint32_t vertex) { return vertex_[vertex]; }
   // Call for each corner of a new face in turn, once all of its corners are in the topology; the edge from -> to starts
@@ -35,7 +39,8 @@ class OpenEdges {
   void add_edge(uint32_t corner, uint32_t from, uint32_t to) {
     if (topology_.twin[corner] != kOpen) return;  // the edge that the face was entered by
     if (from == to) return close(corner);
-    if (const uint32_t newest = vertex_[to].out; newest != kNone) {
+    // The other way round it would be among those that leave `to` and among those that enter `from`.
+    if (const uint32_t newest = vertex_[to].out; newest != kNone && vertex_[from].in != kNone) {
       const bool first = is_open(newest) && end_of(newest) == from;
       if (const uint32_t reverse = first ? newest : find_reverse(from, to); reverse != kNone)
         return pair(corner, reverse);

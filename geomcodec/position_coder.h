@@ -14,9 +14,11 @@
 namespace pac::geomcodec {
 
 // (a - d) x (b - d) over the parallelograms: the normal of the surface, as long as the areas are large.
-inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const KnownPosition> known) {
+// at_most: of the first so many.
+inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const KnownPosition> known,
+                                        int at_most = Stencil::kMax) {
   std::array<int64_t, 3> normal = {0, 0, 0};
-  for (int i = 0; i < stencil.n_parallelograms; ++i) {
+  for (int i = 0; i < std::min(stencil.n_parallelograms, at_most); ++i) {
     const Stencil::Parallelogram& p = stencil.parallelogram[i];
     const PackedPosition opposite = known[p.opposite].at, side_1 = known[p.side_1].at, side_2 = known[p.side_2].at;
     int64_t u[3], w[3];
@@ -29,6 +31,17 @@ inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const 
     normal[2] += u[0] * w[1] - u[1] * w[0];
   }
   return normal;
+}
+
+// Axes by how far along them the normal points, the farthest last; by three exchanges.
+inline void order_by_normal(const std::array<int64_t, 3>& normal, size_t (&order)[3]) {
+  for (size_t i = 0; i < 3; ++i) order[i] = i;
+  const auto swap_if_longer = [&](size_t i, size_t j) {
+    if (std::abs(normal[order[i]]) > std::abs(normal[order[j]])) std::swap(order[i], order[j]);
+  };
+  swap_if_longer(0, 1);
+  swap_if_longer(1, 2);
+  swap_if_longer(0, 1);
 }
 
 // Where a mesh is made of equal parts: parts (seeds of the walk) by their first vertex.
@@ -108,7 +121,7 @@ class PositionCoder {
  private:
   struct Prediction {
     int32_t at[3] = {0, 0, 0};
-    int order[3] = {0, 1, 2};
+    size_t order[3] = {0, 1, 2};
     int64_t normal[3] = {0, 0, 0};  // in that order; the last one 0: no lifting
     uint32_t spread = 0;            // class of what the neighbors' mean and the parallelograms disagree by
     PositionBasis basis = kPrevious;
@@ -175,15 +188,8 @@ typename PositionCoder<Coder>::Prediction PositionCoder<Coder>::predict(uint32_t
 template <class Coder>
 void PositionCoder<Coder>::lift(const Stencil& stencil, Prediction& prediction) const {
   const std::array<int64_t, 3> normal = normal_of(stencil, known_);
-  int* order = prediction.order;
-  const auto swap_if_longer = [&](int i, int j) {
-    if (std::abs(normal[static_cast<size_t>(order[i])]) > std::abs(normal[static_cast<size_t>(order[j])]))
-      std::swap(order[i], order[j]);
-  };
-  swap_if_longer(0, 1);
-  swap_if_longer(1, 2);
-  swap_if_longer(0, 1);
-  for (int i = 0; i < 3; ++i) prediction.normal[i] = normal[static_cast<size_t>(order[i])];
+  order_by_normal(normal, prediction.order);
+  for (size_t i = 0; i < 3; ++i) prediction.normal[i] = normal[prediction.order[i]];
 }
 
 // The neighbors' mean classes in halves; without neighbors those of the vertex before.
@@ -208,7 +214,7 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
   uint32_t classes_coded = 0;
   HeldCoder<Coder> coder = coder_;
   for (size_t role = 0; role < 3; ++role) {
-    const auto axis = static_cast<size_t>(prediction.order[role]);
+    const size_t axis = prediction.order[role];
     int32_t expected = prediction.at[axis];
     if (role == 2 && prediction.normal[2] != 0) {
       const int64_t sign = prediction.normal[2] < 0 ? -1 : 1;

@@ -64,6 +64,25 @@ void Stencils::collect_triangles(uint32_t vertex, bool with_twists, Stencil& ste
   stencil.n_twists = n_twists;
 }
 
+// The same where every face is a quadrilateral, without twists.
+void Stencils::collect_quads(uint32_t vertex, Stencil& stencil) const {
+  const uint32_t* corner_vertex = topology_.corner_vertex.data();
+  const uint32_t *at = begin(vertex), *last = end(vertex);
+  int n_neighbors = 0, n_parallelograms = 0;
+  for (; at != last && n_neighbors < Stencil::kMax; ++at) {
+    const uint32_t* face = corner_vertex + (*at & ~3u);
+    const uint32_t a = face[(*at + 1) & 3], b = face[(*at + 3) & 3], opposite = face[(*at + 2) & 3];
+    stencil.neighbor[n_neighbors] = a;
+    n_neighbors += a < vertex ? 1 : 0;
+    stencil.neighbor[n_neighbors] = b;
+    n_neighbors += b < vertex ? 1 : 0;
+    stencil.parallelogram[n_parallelograms] = {a, b, opposite};
+    n_parallelograms += std::max({a, b, opposite}) < vertex ? 1 : 0;
+  }
+  stencil.n_neighbors = std::min(n_neighbors, Stencil::kMax);
+  stencil.n_parallelograms = n_parallelograms;
+}
+
 void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
   stencil.clear();
   if (vertex >= topology_.n_vertices) return;
@@ -72,6 +91,8 @@ void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
   stencil.n_corners = static_cast<int>(n_corners);
   if (topology_.all_triangles)
     collect_triangles(vertex, with_twists, stencil);
+  else if (topology_.all_quads && !with_twists)
+    collect_quads(vertex, stencil);
   else
     for (const uint32_t* corner = first; corner != last && stencil.n_neighbors < Stencil::kMax; ++corner)
       add_corner(vertex, *corner, with_twists, stencil);

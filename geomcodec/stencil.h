@@ -51,12 +51,14 @@ class Stencils {
   explicit Stencils(const Topology& topology);
   // Empty for vertices that no face uses; twists only if wanted.
   void get(uint32_t vertex, bool with_twists, Stencil& stencil) const;
+  uint32_t n_vertices() const { return static_cast<uint32_t>(first_.size()) - 1; }
   // Corners at `vertex`, in their order.
   const uint32_t* begin(uint32_t vertex) const { return around_.data() + first_[vertex]; }
   const uint32_t* end(uint32_t vertex) const { return around_.data() + first_[vertex + 1]; }
 
  private:
   void collect_triangles(uint32_t vertex, bool with_twists, Stencil& stencil) const;
+  void collect_quads(uint32_t vertex, Stencil& stencil) const;
   void add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const;
   void add_extension(uint32_t vertex, uint32_t corner, Stencil& stencil) const;
   uint32_t tip_across(uint32_t vertex, uint32_t edge) const;

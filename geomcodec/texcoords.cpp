@@ -16,7 +16,7 @@ class TexcoordCoder {
         coder_(coder),
         mask_((1 << bits) - 1),
         half_(1 << (bits - 1)),
-        models_(std::make_unique<Models>()) {}
+        models_(Coder::kTables ? nullptr : std::make_unique<Models>()) {}
   void begin(std::span<QuantizedVertex> /*vertices*/) {}
   void code(uint32_t v, std::span<QuantizedVertex> vertices);
 
@@ -161,7 +161,8 @@ void TexcoordCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices)
   for (size_t i = 0; i < 2; ++i) {
     const uint32_t scale = mean_class(v, stencil, [&](uint32_t vertex) { return int32_t{memory_[vertex][i]}; });
     int32_t residual = ((texcoord[i] - chosen.at[i] + half_) & mask_) - half_;
-    residual = models_->component[i].code(coder, chosen.basis, scale, other, before, residual);
+    residual = code_component(coder, models_ == nullptr ? nullptr : &models_->component[i], static_cast<uint32_t>(i),
+                              chosen.basis, scale, other, before, residual);
     texcoord[i] = static_cast<uint16_t>((chosen.at[i] + residual) & mask_);
     memory_[v][i] = static_cast<uint8_t>(class_of(residual));
     other = class_of(residual);
@@ -173,14 +174,26 @@ void TexcoordCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices)
 
 }  // namespace
 
-std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits) {
+std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
+                                      bool by_tables) {
+  if (by_tables) {
+    TableEncoder coder(kAttributeContexts);
+    TexcoordCoder<TableEncoder> texcoords(mesh, coder, bits);
+    return encode_attribute(texcoords, coder, vertices);
+  }
   RangeEncoder coder;
   TexcoordCoder<RangeEncoder> texcoords(mesh, coder, bits);
   return encode_attribute(texcoords, coder, vertices);
 }
 
 Result<void> decode_texcoords(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                              std::span<QuantizedVertex> vertices, int bits) {
+                              std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
+  if (by_tables) {
+    SymbolTables tables;
+    TableDecoder coder(bytes, kAttributeContexts, tables);
+    TexcoordCoder<TableDecoder> texcoords(mesh, coder, bits);
+    return decode_attribute(texcoords, coder, vertices);
+  }
   RangeDecoder coder(bytes);
   TexcoordCoder<RangeDecoder> texcoords(mesh, coder, bits);
   return decode_attribute(texcoords, coder, vertices);

@@ -18,19 +18,24 @@ struct Topology {
   std::vector<uint32_t> corner_face;
   std::vector<uint32_t> twin;  // the corner whose edge joins the same vertices the other way round, or kNone
   uint32_t n_vertices = 0;     // those that faces use
-  bool all_triangles = false;  // every face has three corners: then numbers alone tell which corners follow
+  // Every face has three corners, or four: then numbers alone tell which corners follow.
+  bool all_triangles = false, all_quads = false;
 
   uint32_t n_faces() const { return static_cast<uint32_t>(face_first.size()) - 1; }
   uint32_t n_corners() const { return static_cast<uint32_t>(corner_vertex.size()); }
   uint32_t face_size(uint32_t face) const { return face_first[face + 1] - face_first[face]; }
-  uint32_t size_of_face_at(uint32_t corner) const { return all_triangles ? 3 : face_size(corner_face[corner]); }
+  uint32_t size_of_face_at(uint32_t corner) const {
+    return all_triangles ? 3 : all_quads ? 4 : face_size(corner_face[corner]);
+  }
   uint32_t next(uint32_t corner) const {
     if (all_triangles) return corner % 3 == 2 ? corner - 2 : corner + 1;
+    if (all_quads) return (corner & ~3u) | ((corner + 1) & 3);
     const uint32_t face = corner_face[corner];
     return corner + 1 < face_first[face + 1] ? corner + 1 : face_first[face];
   }
   uint32_t previous(uint32_t corner) const {
     if (all_triangles) return corner % 3 == 0 ? corner + 2 : corner - 1;
+    if (all_quads) return (corner & ~3u) | ((corner + 3) & 3);
     const uint32_t face = corner_face[corner];
     return corner > face_first[face] ? corner - 1 : face_first[face + 1] - 1;
   }

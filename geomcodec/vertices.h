@@ -20,5 +20,10 @@ struct VertexFailure {
 bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::span<const uint8_t> color_bytes,
                                  const AttributeMesh& mesh, int position_bits, bool trained,
                                  std::span<QuantizedVertex> vertices, VertexFailure& failure);
+// The same where tables code both.
+bool decode_positions_and_colors_by_tables(std::span<const uint8_t> position_bytes,
+                                           std::span<const uint8_t> color_bytes, const AttributeMesh& mesh,
+                                           int position_bits, std::span<QuantizedVertex> vertices,
+                                           VertexFailure& failure);
 
 }  // namespace pac::geomcodec

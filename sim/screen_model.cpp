@@ -325,7 +325,7 @@ Result<ScreenModel> encode_screen_model(const raster::Scene& scene, const raster
   ScreenModel model;
   model.polygons = mesh.faces.size();
   model.vertices = mesh.vertices.size();
-  PAC_TRY(model.bytes, geomcodec::encode(mesh, {}, &model.parts));
+  PAC_TRY(model.bytes, geomcodec::encode(mesh, {.effort = geomcodec::Effort::best}, &model.parts));
   return model;
 }
 

@@ -11,8 +11,10 @@
 namespace {
 
 using pac::geomcodec::decode;
+using pac::geomcodec::Effort;
 using pac::geomcodec::encode;
 using pac::geomcodec::EncodedSize;
+using pac::geomcodec::EncodeOptions;
 using pac::geomcodec::QuantizedMesh;
 using pac::test::Fnv;
 using pac::test::mesh_zoo;
@@ -37,17 +39,21 @@ TEST_CASE("the worked example of FORMAT.md is what encode writes") {
 }
 
 TEST_CASE("streams are the same bytes on every platform and compiler") {
-  Fnv fnv, trained;
+  Fnv fnv, trained, tables;
   for (const NamedMesh& entry : mesh_zoo()) {
     for (const bool keep_order : {false, true}) {
-      const std::vector<uint8_t> bytes = encode(entry.mesh, {keep_order, false}).value();
+      const std::vector<uint8_t> bytes = encode(entry.mesh, {keep_order, false, Effort::best}).value();
       for (const uint8_t byte : bytes) fnv.add(byte);
-      const std::vector<uint8_t> from_trained = encode(entry.mesh, {keep_order, true}).value();
+      const std::vector<uint8_t> from_trained = encode(entry.mesh, {keep_order, true, Effort::best}).value();
       for (const uint8_t byte : from_trained) trained.add(byte);
+      const std::vector<uint8_t> by_tables =
+          encode(entry.mesh, {.keep_order = keep_order, .effort = Effort::fast}).value();
+      for (const uint8_t byte : by_tables) tables.add(byte);
     }
   }
   REQUIRE(fnv.hash() == 0xfac2dacd30022174u);
   REQUIRE(trained.hash() == 0x42683f571d92956au);
+  REQUIRE(tables.hash() == 0x0ef74654bb69ff8au);
 }
 
 TEST_CASE("streams whose models start untrained are still written and read") {
@@ -65,8 +71,10 @@ TEST_CASE("a decoder written from FORMAT.md alone, in another language, reads ou
   int n_files = 0;
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.indices.size() > 1200 || entry.mesh.vertices.size() > 1200) continue;
-    for (const bool trained : {false, true}) {
-      const std::vector<uint8_t> bytes = encode(entry.mesh, {!trained, trained}).value();
+    const EncodeOptions kinds[] = {
+        {.keep_order = true, .trained_priors = false}, {}, {.keep_order = n_files % 2 == 0, .effort = Effort::fast}};
+    for (const EncodeOptions& kind : kinds) {
+      const std::vector<uint8_t> bytes = encode(entry.mesh, kind).value();
       const std::string file = folder.file(std::to_string(n_files++));
       pac::test::write_bytes(file, bytes);
       arguments += " " + file;
@@ -75,6 +83,18 @@ TEST_CASE("a decoder written from FORMAT.md alone, in another language, reads ou
   }
   REQUIRE(n_files >= 20);
   pac::test::require_decoded("pgc_reference_decoder.py", arguments, expected);
+}
+
+TEST_CASE("a large mesh is coded by tables unless its encoder is asked for the fewest bytes") {
+  const QuantizedMesh pin = pac::test::pin_mesh(160, 120, 14);
+  const std::vector<uint8_t> balanced = encode(pin).value(), best = encode(pin, {.effort = Effort::best}).value();
+  const auto version = [](const std::vector<uint8_t>& bytes) { return pac::geomcodec::read_info(bytes)->version; };
+  REQUIRE(version(balanced) == 4);
+  REQUIRE(version(best) == 3);
+  REQUIRE(encode(pin, {.effort = Effort::fast}).value() == balanced);
+  REQUIRE(best.size() < balanced.size());
+  REQUIRE(pac::test::same(decode(balanced).value(), decode(best).value()));
+  REQUIRE(version(encode(pac::test::pin_mesh(32, 47, 16)).value()) == 3);
 }
 
 // A guard against silent loss of compression; FORMAT.md's version must change before these may.

@@ -15,7 +15,9 @@ namespace {
 using pac::Error;
 using pac::Limits;
 using pac::geomcodec::decode;
+using pac::geomcodec::Effort;
 using pac::geomcodec::encode;
+using pac::geomcodec::EncodeOptions;
 using pac::geomcodec::Grid;
 using pac::geomcodec::quantize;
 using pac::geomcodec::QuantizedMesh;
@@ -45,12 +47,14 @@ void require_sound(const QuantizedMesh& mesh) {
   REQUIRE(in_range);
 }
 
+constexpr EncodeOptions kKinds[] = {{}, {.keep_order = true}, {.keep_order = true, .effort = Effort::fast}};
+
 TEST_CASE("every strict prefix of a stream, and a stream with a byte more, is refused") {
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.indices.size() > 2000) continue;
     CAPTURE(entry.name);
-    for (const bool keep_order : {false, true}) {
-      Bytes bytes = encode(entry.mesh, {keep_order}).value();
+    for (const EncodeOptions& kind : kKinds) {
+      Bytes bytes = encode(entry.mesh, kind).value();
       for (size_t size = 0; size < bytes.size(); ++size) {
         const Bytes prefix(bytes.begin(),
                            bytes.begin() + static_cast<ptrdiff_t>(size));  // sized exactly, for sanitizers
@@ -65,11 +69,13 @@ TEST_CASE("every strict prefix of a stream, and a stream with a byte more, is re
 }
 
 TEST_CASE("a flipped bit anywhere is noticed by the checksum or the header's rules") {
-  const Bytes bytes = encode(pac::test::wave_mesh(5, 4, false), {.keep_order = true}).value();
-  for (size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
-    Bytes damaged = bytes;
-    damaged[bit / 8] = static_cast<uint8_t>(damaged[bit / 8] ^ 1 << bit % 8);
-    REQUIRE(!decode(damaged, small_limits()).ok());
+  for (const EncodeOptions& kind : kKinds) {
+    const Bytes bytes = encode(pac::test::wave_mesh(5, 4, false), kind).value();
+    for (size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+      Bytes damaged = bytes;
+      damaged[bit / 8] = static_cast<uint8_t>(damaged[bit / 8] ^ 1 << bit % 8);
+      REQUIRE(!decode(damaged, small_limits()).ok());
+    }
   }
 }
 
@@ -89,9 +95,9 @@ TEST_CASE("damaged streams whose checksum was repaired decode to a sound mesh or
   size_t n_decoded = 0, n_tried = 0;
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.indices.size() > 4000) continue;
-    for (const bool keep_order : {false, true}) {
+    for (const EncodeOptions& kind : kKinds) {
       pac::geomcodec::EncodedSize size;
-      const Bytes bytes = encode(entry.mesh, {keep_order}, &size).value();
+      const Bytes bytes = encode(entry.mesh, kind, &size).value();
       for (int round = 0; round < 60; ++round) {
         Bytes damaged = bytes;
         const size_t n_changes = 1 + random(3);

@@ -8,6 +8,7 @@
 namespace {
 
 using pac::geomcodec::decode;
+using pac::geomcodec::Effort;
 using pac::geomcodec::encode;
 using pac::geomcodec::EncodedSize;
 using pac::geomcodec::QuantizedMesh;
@@ -43,11 +44,13 @@ std::vector<std::vector<uint32_t>> face_set(const QuantizedMesh& mesh) {
 TEST_CASE("with keep_order every mesh of the zoo comes back bit for bit") {
   for (const NamedMesh& entry : mesh_zoo()) {
     CAPTURE(entry.name);
-    const auto bytes = encode(entry.mesh, {.keep_order = true});
-    REQUIRE(bytes.ok());
-    const auto decoded = decode(*bytes);
-    REQUIRE(decoded.ok());
-    REQUIRE(same(*decoded, entry.mesh));
+    for (const Effort effort : {Effort::fast, Effort::balanced, Effort::best}) {
+      const auto bytes = encode(entry.mesh, {.keep_order = true, .effort = effort});
+      REQUIRE(bytes.ok());
+      const auto decoded = decode(*bytes);
+      REQUIRE(decoded.ok());
+      REQUIRE(same(*decoded, entry.mesh));
+    }
   }
 }
 
@@ -55,11 +58,13 @@ TEST_CASE("without it every mesh comes back as reorder() says, which keeps verti
   for (const NamedMesh& entry : mesh_zoo()) {
     CAPTURE(entry.name);
     const QuantizedMesh expected = reorder(entry.mesh);
-    const auto bytes = encode(entry.mesh);
-    REQUIRE(bytes.ok());
-    const auto decoded = decode(*bytes);
-    REQUIRE(decoded.ok());
-    REQUIRE(same(*decoded, expected));
+    for (const Effort effort : {Effort::fast, Effort::balanced}) {
+      const auto bytes = encode(entry.mesh, {.effort = effort});
+      REQUIRE(bytes.ok());
+      const auto decoded = decode(*bytes);
+      REQUIRE(decoded.ok());
+      REQUIRE(same(*decoded, expected));
+    }
     REQUIRE(expected.vertices.size() == entry.mesh.vertices.size());
     REQUIRE((entry.mesh.faces.size() > 2000 || face_set(expected) == face_set(entry.mesh)));
     REQUIRE(same(reorder(expected), expected));

@@ -197,6 +197,79 @@ class Decoder:
         assert len(self.data) <= self.at + (self.used + 7) // 8 <= len(self.data) + 8
 
 
+class TableDecoder:  # section 15
+    def __init__(self, data, contexts):
+        self.data, self.used, self.bits = data, 0, int.from_bytes(data, "big")
+        self.forward, self.taken = int.from_bytes(data, "little"), 0
+        self.tables, last = {}, None
+        context = 0
+        while context < contexts:
+            kind = self.take(2)
+            if kind == 0:
+                context += self.taken_number()
+                continue
+            if kind == 1:
+                last = [0] * 16
+                last[self.take(4)] = 2048
+            elif kind == 2:
+                highest = self.take(4)
+                last = [self.taken_number() for _ in range(highest)]
+                last += [2048 - sum(last)] + [0] * (15 - highest)
+            assert sum(last) == 2048 and min(last) >= 0
+            self.tables[context] = last
+            context += 1
+        assert context == contexts
+        self.at = (self.taken + 7) // 8
+        self.state = list(struct.unpack_from("<4I", data, self.at))
+        self.at += 16
+
+    def take(self, k):
+        value = self.forward >> self.taken & ((1 << k) - 1)
+        self.taken += k
+        return value
+
+    def taken_number(self):
+        length = self.take(4)
+        return 1 << length - 1 | self.take(length - 1) if length else 0
+
+    raw = Decoder.raw
+
+    def symbol(self, lane, context):
+        x, freq = self.state[lane], self.tables[context]
+        slot, symbol, start = x & 2047, 0, 0
+        while start + freq[symbol] <= slot:
+            start += freq[symbol]
+            symbol += 1
+        x = freq[symbol] * (x >> 11) + slot - start
+        if x < 65536:
+            x = x << 16 | struct.unpack_from("<H", self.data, self.at)[0]
+            self.at += 2
+        self.state[lane] = x
+        return symbol
+
+    def residual(self, lane, context):
+        length = self.symbol(lane, context)
+        if length == 15:
+            length += self.raw(1)
+        if length == 0:
+            return 0
+        field, leading = self.raw(length), 1 << length - 1
+        return -(leading | field & leading - 1) if field & leading else leading | field
+
+    def number(self):
+        length = self.raw(6)
+        if length < 2:
+            return length
+        x, left = 1, length - 1
+        while left > 0:
+            k = min(16, left)
+            x, left = x << k | self.raw(k), left - k
+        return x
+
+    def finish(self):
+        assert self.state == [65536] * 4 and self.at + (self.used + 7) // 8 == len(self.data)
+
+
 class Fields:  # section 1, and what ends a header
     def varint(self):
         value = shift = 0
@@ -222,8 +295,11 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] == 3
-        self.flags, self.bits, self.at, self.b = b[4], b[5], 6, b
+        assert b[:3] == b"PGC" and b[3] in (3, 4)
+        self.flags, self.at, self.b = b[4], 5, b
+        self.tables = self.byte() if b[3] == 4 else 0
+        assert (self.tables > 0) == (b[3] == 4) and self.tables & ~0x3D == 0
+        self.bits = self.byte()
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
         if not self.flags & 4:
@@ -254,6 +330,10 @@ class Header(Fields):  # section 2
         self.at += 1
         return self.b[self.at - 1]
 
+    def decoder(self, section, contexts):
+        data = self.sections[section]
+        return TableDecoder(data, contexts) if self.tables >> section & 1 else Decoder(data)
+
     def floats(self, n):
         self.at += 4 * n
         return struct.unpack_from("<%df" % n, self.b, self.at - 4 * n)
@@ -261,7 +341,8 @@ class Header(Fields):  # section 2
 
 class Connectivity:  # section 4
     def __init__(self, header):
-        self.h, self.d = header, Decoder(header.sections[0])
+        self.h, self.d = header, header.decoder(0, 696)
+        self.tables = header.tables & 1 > 0
         self.faces, self.vertex, self.face_of, self.next, self.previous, self.twin = [], [], [], [], [], []
         self.open, self.starting, self.ending = [], {}, {}
         self.n_vertices, self.degrees, self.border = 0, {}, {}
@@ -271,9 +352,12 @@ class Connectivity:  # section 4
             gate = self.gate()
             if gate is None:
                 corners = []
-                for _ in range(3 if header.triangles else 3 + self.d.number("size", 3)):
-                    corners.append(self.corner("seed", corners))
+                size = 3 if header.triangles else 3 + (self.d.number() if self.tables else self.d.number("size", 3))
+                for _ in range(size):
+                    corners.append(self.table_corner(0, corners) if self.tables else self.corner("seed", corners))
                 self.finish(corners, None)
+            elif self.tables:
+                self.table_gate(gate)
             elif self.across(gate):
                 self.face(gate)
         assert self.n_vertices == header.points and len(self.vertex) == header.corners
@@ -330,6 +414,44 @@ class Connectivity:  # section 4
         for k in range(2, size):
             place = "only" if size == 3 else "first" if k == 2 else "middle" if k + 1 < size else "last"
             corners.append(self.corner(place, corners))
+        self.finish(corners, gate)
+
+    def candidates(self, corners):
+        first, last = corners[0], corners[-1]
+        return [self.before(last), self.after(first), self.after(self.after(first)), self.before(self.before(last))]
+
+    def named(self, symbol, candidates):
+        assert symbol < 6
+        if symbol == 0:
+            self.n_vertices += 1
+        if symbol in (0, 5):
+            return self.n_vertices - 1 - (self.d.number() if symbol else 0)
+        return candidates[symbol - 1]
+
+    def table_corner(self, place, corners):  # section 15
+        c, left, right = [None] * 4, 0, 0
+        if corners:
+            c, left, right = self.candidates(corners), self.degree(corners[-1]), self.degree(corners[0])
+        context = 480 + ((place * 6 + min(left, 5)) * 6 + min(right, 5)) * 2 + (c[0] != c[1])
+        return self.named(self.d.symbol(0, context) if self.n_vertices else 0, c)
+
+    def table_gate(self, gate):
+        a, b = self.vertex[gate], self.end(gate)
+        size = self.faces[self.face_of[gate]][1]
+        between = self.before(a) != self.after(b)
+        context = (((self.degree(a) * 6 + min(self.degree(b), 5)) * 2 + between) * 2 + self.border.get(a, 0)) * 2 + (size == 3)
+        symbol = self.d.symbol(0, context)
+        self.open[gate] = False
+        if symbol == 6:
+            self.border[a] = self.border[b] = 1
+            return
+        corners = [b, a]
+        if symbol == 7:
+            size = 3 if self.h.triangles else 3 + self.d.number()
+        else:
+            corners.append(self.named(symbol, self.candidates(corners)))
+        for k in range(len(corners), size):
+            corners.append(self.table_corner(0 if k == 2 else 1 if k + 1 < size else 2, corners))
         self.finish(corners, gate)
 
     def corner(self, place, corners):
@@ -531,7 +653,8 @@ class Stencil:  # section 6; vertex: per corner; vertices below v are known
 
 class Positions:  # section 6
     def __init__(self, header, mesh):
-        self.h, self.mesh, self.d = header, mesh, Decoder(header.sections[2])
+        self.h, self.mesh, self.d = header, mesh, header.decoder(2, 315)
+        self.tables = header.tables >> 2 & 1
         self.mask, self.half = (1 << header.bits) - 1, 1 << header.bits - 1
         self.read_weights()
         self.around = [[] for _ in range(header.points)]
@@ -550,6 +673,12 @@ class Positions:  # section 6
 
     def read_weights(self):
         raw = self.d.raw
+        if self.tables:
+            self.exact = self.period = 0
+            self.raw, self.lifted = raw(1), raw(1)
+            own = raw(1)
+            self.share = [(((raw(8) if own else 0) ^ 128) - 128, 0) for _ in range(16)]
+            return
         self.share, self.lifted, self.exact, self.period = [(0, 0)] * 16, 0, 0, 0
         self.raw = raw(1)
         if self.raw:
@@ -593,7 +722,7 @@ class Positions:  # section 6
             spread = min(17, (spread >> 6).bit_length())
             if self.lifted:
                 n = [0, 0, 0]
-                for a, b, d in s.parallelograms:
+                for a, b, d in s.parallelograms[: 2 if self.tables else 12]:
                     u = [self.at[a][i] - self.at[d][i] for i in range(3)]
                     w = [self.at[b][i] - self.at[d][i] for i in range(3)]
                     for i in range(3):
@@ -612,6 +741,8 @@ class Positions:  # section 6
     def vertex(self, v):
         s = Stencil(self.mesh, self.mesh.vertex, self.mesh.twin, self.around[v] if v < self.h.points else [], v)
         plain = self.predict(s, v)
+        if self.tables:
+            return self.code(v, s, plain)
         lag, first = self.lag(v)
         if lag == 0 or lag >= v:
             return self.code(v, s, plain)
@@ -635,7 +766,11 @@ class Positions:  # section 6
                 follows = -(normal[0] * missed[0] + normal[1] * missed[1])
                 expected += rnd(follows, normal[2]) if normal[2] > 0 else rnd(-follows, -normal[2])
                 expected = max(0, min(self.mask, expected))
-            r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role),
+            if self.tables:
+                founded = 0 if s.extended else min(2, len(s.parallelograms))
+                r = self.d.residual(role, (3 * role + founded) * 35 + scales[role])
+            else:
+                r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role),
                                 self.h.priors and (self.h.priors[0][(0, 0, 1, 2, 3, 3, 1)[basis]], self.h.priors[1][0]))
             self.at[v][axis] = expected + r & self.mask
             missed[role] = self.at[v][axis] - at[axis]
@@ -673,15 +808,15 @@ class Attributes:  # sections 7 to 9
         self.normals = [[0, 0] for _ in self.position]
         self.texcoords = [[0, 0] for _ in self.position]
         if header.sections[3] or (self.position and not header.color):
-            self.d = Decoder(header.sections[3])
+            self.d, self.tables = header.decoder(3, 971), header.tables >> 3 & 1
             self.code_colors()
             self.d.finish()
         if self.position and header.normal_bits:
-            self.d = Decoder(header.sections[4])
+            self.d, self.tables = header.decoder(4, 971), header.tables >> 4 & 1
             self.code_normals()
             self.d.finish()
         if self.position and header.texcoord_bits:
-            self.d = Decoder(header.sections[5])
+            self.d, self.tables = header.decoder(5, 971), header.tables >> 5 & 1
             self.code_texcoords()
             self.d.finish()
 
@@ -692,12 +827,19 @@ class Attributes:  # sections 7 to 9
         w = self.sibling(v)
         if w is None:
             return False
-        self.last_same = self.d.bit(("same", self.last_same))
+        same = self.d.symbol(0, 969 + self.last_same) if self.tables else self.d.bit(("same", self.last_same))
+        self.last_same = 1 if same else 0
         if self.last_same:
             values[v], memory[v] = list(values[w]), memory[w]
         return self.last_same
 
-    def component(self, name, basis, scale, other, before, prior=None):
+    def component(self, name, basis, scale, other, before, prior=None, rank=None):
+        if self.tables:
+            rank = name if rank is None else rank
+            context = (0 if basis < 2 else 1 if basis < 4 else 2) * 35 + scale
+            if rank:
+                context = 105 + (rank - 1) * 288 + min(other, 15) * 18 + (scale + 1) // 2
+            return self.d.residual(rank, context)
         sign = 0 if before == 0 else 1 if before > 0 else 2
         return self.d.residual((name, "scale", basis, scale), (name, "other", basis, other), (name, "detail", sign), prior)
 
@@ -735,7 +877,7 @@ class Attributes:  # sections 7 to 9
                 if self.h.priors and channel < 3:
                     prior = (self.h.priors[0][(4 if channel == 1 else 7) + (0, 0, 1, 1, 2, 2)[s.basis]],
                              self.h.priors[1][1 if channel == 1 else 2])
-                r = self.component(channel, s.basis, scale, other, before, prior)
+                r = self.component(channel, s.basis, scale, other, before, prior, (1, 0, 2, 3)[channel])
                 level = self.colors[v][channel] = prediction + r & 255
                 other, before = max(other, abs(r).bit_length()), r
                 if channel == 1:

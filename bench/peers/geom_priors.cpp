@@ -204,14 +204,18 @@ class Collected {
   std::array<std::array<Weights, kClasses>, kDetailSets> details_ = {};
 };
 
+constexpr EncodeOptions kUntrained = {.trained_priors = false, .effort = Effort::best};
+
 // Decodes positions and colors as vertices.cpp does and keeps the models. Meshes with seams are passed over.
 void train(const QuantizedMesh& mesh, Collected& collected) {
-  const std::vector<uint8_t> bytes = encode(mesh, {.keep_order = false, .trained_priors = false}).value();
+  const std::vector<uint8_t> bytes = encode(mesh, kUntrained).value();
   const ParsedStream stream = parse_stream(bytes).value();
   const Header& header = stream.header;
   if (header.n_split_vertices > 0 || !header.has(kColors)) return;
   const Topology points =
-      decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners}).value();
+      decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners}, false,
+                          bytes.size())
+          .value();
   const Seams seams = decode_seams({}, points, header.n_used_vertices).value();
   const Stencils stencils(points);
   RangeDecoder of_positions(stream.section[kPositions]), of_colors(stream.section[kColors]);
@@ -249,8 +253,8 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--sizes") == 0) {
     for (uint64_t seed = kTraining; seed < kTraining + kOthers; ++seed) {
       const QuantizedMesh mesh = training_mesh(seed);
-      const size_t with = encode(mesh, {.keep_order = false, .trained_priors = true}).value().size();
-      const size_t without = encode(mesh, {.keep_order = false, .trained_priors = false}).value().size();
+      const size_t with = encode(mesh, {.effort = Effort::best}).value().size();
+      const size_t without = encode(mesh, kUntrained).value().size();
       std::printf("%6zu faces %7zu -> %7zu bytes, %.3f\n", mesh.faces.size(), without, with,
                   static_cast<double>(with) / static_cast<double>(without));
     }

@@ -74,7 +74,7 @@ void print_sizes(std::FILE* out, const EncodedSize& size, const Counts& counts) 
 
 int run_geom_encode(Args args) {
   Options options("geom encode", "codes a polygon mesh: positions quantized, then without loss",
-                  "pac geom encode model.obj --position-bits 14 -o model.pgc");
+                  "pac geom encode model.obj --position-bits 14 --effort best -o model.pgc");
   std::string in, out;
   geomcodec::AttributeBits bits;
   geomcodec::EncodeOptions encode;
@@ -86,6 +86,11 @@ int run_geom_encode(Args args) {
   options.integer("--texcoord-bits", "N", bits.texcoord, 0, 16, "of texture coordinates; 0 drops them (0)");
   options.flag("--keep-order", encode.keep_order,
                "vertices and polygons come back in the order given; else equal vertices become one");
+  using geomcodec::Effort;
+  options.choice<Effort>("--effort", encode.effort,
+                         {{"fast", Effort::fast}, {"default", Effort::balanced}, {"best", Effort::best}},
+                         "fast: symbols by tables; default: the same from 16,384 vertices on; best: adaptive models, "
+                         "the fewest bytes");
   if (const auto code = options.parse(args)) return *code;
   if (options.json && out == "-") return options.usage_error("--json and -o - both want stdout");
   auto scene = load_scene(in, options);

@@ -13,7 +13,7 @@ namespace {
 size_t checksum_offset(const std::vector<uint8_t>& bytes) {
   if (bytes.size() < 6) return bytes.size();
   const uint8_t flags = bytes[4];
-  size_t at = 6;
+  size_t at = bytes[3] == 4 ? 7 : 6;  // version 4 has a byte more
   const auto number = [&] {
     uint64_t value = 0;
     for (int shift = 0; at < bytes.size(); shift += 7) {
@@ -65,11 +65,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return 0;
   }
   for (const uint32_t index : mesh->indices) PAC_ASSERT(index < mesh->vertices.size());
-  const auto encoded = pac::geomcodec::encode(*mesh, {.keep_order = true});
-  PAC_ASSERT(encoded.ok());
-  const auto again = pac::geomcodec::decode(*encoded);
-  PAC_ASSERT(again.ok());
-  PAC_ASSERT(again->indices == mesh->indices);
-  PAC_ASSERT(again->vertices == mesh->vertices);
+  for (const auto effort : {pac::geomcodec::Effort::fast, pac::geomcodec::Effort::best}) {
+    const auto encoded = pac::geomcodec::encode(*mesh, {.keep_order = true, .effort = effort});
+    PAC_ASSERT(encoded.ok());
+    const auto again = pac::geomcodec::decode(*encoded);
+    PAC_ASSERT(again.ok());
+    PAC_ASSERT(again->indices == mesh->indices);
+    PAC_ASSERT(again->vertices == mesh->vertices);
+  }
   return 0;
 }

@@ -1,0 +1,295 @@
+#include "geomcodec/table_coder.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/exact_math.h"
+
+namespace pac::geomcodec {
+namespace {
+
+using Counts = std::array<uint32_t, kTableSymbols>;
+
+// How a context's table is told.
+enum TableKind : uint32_t { kUnused, kOneSymbol, kOwn, kAsBefore };
+
+uint64_t total_of(const Counts& counts) {
+  uint64_t total = 0;
+  for (const uint32_t count : counts) total += count;
+  return total;
+}
+
+// Frequencies in proportion to counts, at least 1 where a symbol occurs; the most frequent one takes what is left.
+FrequencyTable normalized(const Counts& counts) {
+  const uint64_t total = total_of(counts);
+  const size_t most = static_cast<size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+  std::array<uint32_t, kTableSymbols> freq = {};
+  uint32_t others = 0;
+  for (size_t s = 0; s < kTableSymbols; ++s) {
+    if (s == most || counts[s] == 0) continue;
+    freq[s] = static_cast<uint32_t>(std::max<uint64_t>(1, (uint64_t{counts[s]} * kTableTotal + total / 2) / total));
+    others += freq[s];
+  }
+  // The most frequent of 16 symbols has a sixteenth at least, roundings add at most half a unit each and 15 in all.
+  freq[most] = kTableTotal - others;
+  FrequencyTable table;
+  uint32_t start = 0;
+  for (size_t s = 0; s < kTableSymbols; ++s) {
+    table.entry[s] = {static_cast<uint16_t>(freq[s]), static_cast<uint16_t>(start)};
+    start += freq[s];
+  }
+  return table;
+}
+
+// Bits, lowest first, into bytes.
+class BitsOut {
+ public:
+  void put(int count, uint32_t value) {
+    word_ |= uint64_t{value} << n_;
+    for (n_ += count; n_ >= 8; n_ -= 8, word_ >>= 8) bytes_.push_back(static_cast<uint8_t>(word_));
+  }
+  std::vector<uint8_t> take() {
+    if (n_ > 0) bytes_.push_back(static_cast<uint8_t>(word_));
+    return std::move(bytes_);
+  }
+
+ private:
+  std::vector<uint8_t> bytes_;
+  uint64_t word_ = 0;
+  int n_ = 0;
+};
+
+class BitsIn {
+ public:
+  explicit BitsIn(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+  uint32_t get(int count) {
+    uint32_t value = 0;
+    for (int i = 0; i < count; ++i, ++at_) {
+      if (at_ / 8 >= bytes_.size()) return failed_ = true, 0;
+      value |= static_cast<uint32_t>(bytes_[at_ / 8] >> (at_ & 7) & 1) << i;
+    }
+    return value;
+  }
+  bool failed() const { return failed_; }
+  // Whole bytes; the bits left in the last one must be zeros.
+  size_t finish() {
+    while (at_ % 8 != 0)
+      if (get(1) != 0) failed_ = true;
+    return at_ / 8;
+  }
+
+ private:
+  std::span<const uint8_t> bytes_;
+  size_t at_ = 0;
+  bool failed_ = false;
+};
+
+constexpr double kLogOf2 = 0.69314718055994530942;
+constexpr int kLengthBits = 4;  // of a frequency, 0..11, or of a run of contexts, 1..11
+
+// Below 2^15.
+void put_number(BitsOut& out, uint32_t number) {
+  const auto length = static_cast<int>(std::bit_width(number));
+  out.put(kLengthBits, static_cast<uint32_t>(length));
+  if (length > 1) out.put(length - 1, number & ((1u << (length - 1)) - 1));
+}
+
+uint32_t get_number(BitsIn& in) {
+  const auto length = static_cast<int>(in.get(kLengthBits));
+  if (length == 0) return 0;
+  return 1u << (length - 1) | (length > 1 ? in.get(length - 1) : 0);
+}
+
+size_t highest_of(const FrequencyTable& table) {
+  size_t highest = kTableSymbols - 1;
+  while (table.entry[highest].freq == 0) --highest;
+  return highest;
+}
+
+// All but the highest symbol's, which is what is left.
+void put_own(BitsOut& out, const FrequencyTable& table) {
+  const size_t highest = highest_of(table);
+  out.put(4, static_cast<uint32_t>(highest));
+  for (size_t s = 0; s < highest; ++s) put_number(out, table.entry[s].freq);
+}
+
+uint32_t bits_of_own(const FrequencyTable& table) {
+  const size_t highest = highest_of(table);
+  uint32_t bits = 4;
+  for (size_t s = 0; s < highest; ++s)
+    bits += kLengthBits + static_cast<uint32_t>(std::max(1, static_cast<int>(std::bit_width(table.entry[s].freq)))) - 1;
+  return bits;
+}
+
+bool get_own(BitsIn& in, FrequencyTable& table) {
+  const uint32_t highest = in.get(4);
+  uint32_t start = 0;
+  for (uint32_t s = 0; s <= highest; ++s) {
+    uint32_t freq = kTableTotal - start;
+    if (s < highest) {
+      freq = get_number(in);
+      if (freq >= kTableTotal - start) return false;
+    }
+    table.entry[s] = {static_cast<uint16_t>(freq), static_cast<uint16_t>(start)};
+    start += freq;
+  }
+  return highest > 0;
+}
+
+FrequencyTable only(uint32_t symbol) {
+  FrequencyTable table;
+  table.entry[symbol] = {static_cast<uint16_t>(kTableTotal), 0};
+  return table;
+}
+
+// What the counts take by a table, in bits; negative if it lacks a symbol.
+double cost(const Counts& counts, const FrequencyTable& table) {
+  double bits = 0;
+  for (size_t s = 0; s < kTableSymbols; ++s) {
+    if (counts[s] == 0) continue;
+    if (table.entry[s].freq == 0) return -1;
+    bits += counts[s] * (kTableBits - exact_log(table.entry[s].freq) / kLogOf2);
+  }
+  return bits;
+}
+
+// The table of each context, told as the cheapest of the kinds.
+std::vector<FrequencyTable> choose_tables(std::span<const Counts> counts, BitsOut& out) {
+  std::vector<FrequencyTable> tables(counts.size());
+  const FrequencyTable* before = nullptr;
+  for (size_t context = 0; context < counts.size(); ++context) {
+    size_t end = context;
+    while (end < counts.size() && total_of(counts[end]) == 0) ++end;
+    if (end > context) {
+      out.put(2, kUnused);
+      put_number(out, static_cast<uint32_t>(end - context));
+      context = end - 1;
+      continue;
+    }
+    tables[context] = normalized(counts[context]);
+    const size_t highest = highest_of(tables[context]);
+    const bool single = tables[context].entry[highest].freq == kTableTotal;
+    const double own = cost(counts[context], tables[context]) + (single ? 4 : bits_of_own(tables[context]));
+    const double shared = before == nullptr ? -1 : cost(counts[context], *before);
+    if (shared >= 0 && shared <= own) {
+      out.put(2, kAsBefore);
+      tables[context] = *before;
+    } else if (single) {
+      out.put(2, kOneSymbol);
+      out.put(4, static_cast<uint32_t>(highest));
+    } else {
+      out.put(2, kOwn);
+      put_own(out, tables[context]);
+    }
+    before = &tables[context];
+  }
+  return tables;
+}
+
+}  // namespace
+
+std::vector<uint8_t> TableEncoder::finish() {
+  std::vector<Counts> counts(n_contexts_, Counts{});
+  for (const uint16_t note : noted_) ++counts[note >> 6][note >> 2 & 15];
+  BitsOut out;
+  const std::vector<FrequencyTable> tables = choose_tables(counts, out);
+  std::vector<uint8_t> bytes = out.take();
+
+  // Backwards, as a decoder meets the symbols forwards.
+  std::array<uint32_t, kLanes> state;
+  state.fill(kLowestState);
+  std::vector<uint16_t> words;
+  for (size_t i = noted_.size(); i-- > 0;) {
+    const uint16_t note = noted_[i];
+    const FrequencyTable::Entry entry = tables[note >> 6].entry[note >> 2 & 15];
+    uint32_t& x = state[note & 3];
+    if (x >> (32 - kTableBits) >= entry.freq) {
+      words.push_back(static_cast<uint16_t>(x));
+      x >>= 16;
+    }
+    x = (x / entry.freq << kTableBits) + x % entry.freq + entry.start;
+  }
+  for (const uint32_t x : state)
+    for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(x >> shift));
+  for (size_t i = words.size(); i-- > 0;) {
+    bytes.push_back(static_cast<uint8_t>(words[i]));
+    bytes.push_back(static_cast<uint8_t>(words[i] >> 8));
+  }
+  flush_raw();
+  if (raw_count_ > 0) raw_bytes_.push_back(static_cast<uint8_t>(raw_word_));
+  bytes.insert(bytes.end(), raw_bytes_.rbegin(), raw_bytes_.rend());
+  return bytes;
+}
+
+void SymbolTables::add(const FrequencyTable& table) {
+  tables_.push_back(table);
+  symbol_.resize(symbol_.size() + kTableTotal);
+  uint8_t* symbols = symbol_.data() + symbol_.size() - kTableTotal;
+  for (size_t s = 0; s < kTableSymbols; ++s)
+    std::fill_n(symbols + table.entry[s].start, table.entry[s].freq, static_cast<uint8_t>(s));
+}
+
+size_t SymbolTables::parse(std::span<const uint8_t> bytes, size_t n_contexts) {
+  BitsIn in(bytes);
+  tables_.clear();
+  symbol_.clear();
+  of_context_.assign(n_contexts, 0);
+  add(only(0));  // of contexts that no symbol has: only a broken stream asks
+  for (size_t context = 0; context < n_contexts && !in.failed(); ++context) {
+    FrequencyTable table;
+    switch (in.get(2)) {
+      case kUnused: {
+        const uint32_t run = get_number(in);
+        if (run == 0 || run > n_contexts - context) return 0;
+        context += run - 1;
+        continue;
+      }
+      case kOneSymbol:
+        add(only(in.get(4)));
+        break;
+      case kOwn:
+        if (!get_own(in, table)) return 0;
+        add(table);
+        break;
+      default:
+        if (tables_.size() == 1) return 0;
+    }
+    of_context_[context] = static_cast<uint16_t>(tables_.size() - 1);
+  }
+  const size_t size = in.finish();
+  return in.failed() ? 0 : size;
+}
+
+TableDecoder::TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, SymbolTables& tables)
+    : data_(bytes.data()), size_(bytes.size()) {
+  const size_t tables_size = tables.parse(bytes, n_contexts);
+  of_context_ = tables.of_context();
+  symbols_ = tables.symbols();
+  tables_ = tables.tables();
+  static constexpr uint8_t kNothing[2] = {0, 0};
+  bool sound = tables_size > 0 && bytes.size() - tables_size >= 4 * kLanes;
+  for (size_t lane = 0; lane < kLanes; ++lane) {
+    state_[lane] = kLowestState;
+    if (!sound) continue;
+    const uint8_t* at = data_ + tables_size + 4 * lane;
+    state_[lane] = uint32_t{at[0]} | uint32_t{at[1]} << 8 | uint32_t{at[2]} << 16 | uint32_t{at[3]} << 24;
+    sound = state_[lane] >= kLowestState;
+  }
+  position_ = tables_size + 4 * kLanes;
+  if (sound) return;
+  data_ = kNothing;
+  size_ = 2;
+  position_ = 3;
+}
+
+uint32_t TableDecoder::raw_at_start(int count) {
+  uint32_t value = 0;
+  for (int i = 0; i < count; ++i, ++raw_used_) {
+    const uint64_t whole = raw_used_ >> 3;
+    const uint32_t byte = whole < size_ ? data_[size_ - 1 - whole] : 0;
+    value |= (byte >> (raw_used_ & 7) & 1) << i;
+  }
+  return value;
+}
+
+}  // namespace pac::geomcodec

@@ -1,0 +1,160 @@
+// Positions coded by tables: parallelograms, shares of the neighbors' mean, lifting, and no other of the predictions of
+// position_coder.h. FORMAT.md section 15.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geomcodec/position_coder.h"
+#include "geomcodec/table_coder.h"
+
+namespace pac::geomcodec {
+
+// By role, number of parallelograms (none, one, more), mean class of the neighbors in halves.
+inline constexpr uint32_t kPositionScales = 2 * kClasses + 1;
+inline constexpr size_t kPositionContexts = 3 * 3 * kPositionScales;
+
+template <class Coder>
+class TablePositionCoder {
+ public:
+  // known: of the vertices before, as long as those that are to be coded; filled on the way.
+  TablePositionCoder(Coder& coder, const PositionWeights& weights, int bits, std::vector<KnownPosition>& known)
+      : coder_(coder), weights_(weights), bits_(bits), mask_((1 << bits) - 1), half_(1 << (bits - 1)), known_(known) {}
+
+  // Codes position v; those before it are complete. stencil: no twists needed.
+  void code(uint32_t v, const Stencil& stencil, Position& position) {
+    if (weights_.raw) {
+      for (uint16_t& coordinate : position) coordinate = static_cast<uint16_t>(coder_.raw(bits_, coordinate));
+      return;
+    }
+    Prediction prediction;
+    predict(v, stencil, prediction);
+    if (weights_.lifted && stencil.n_parallelograms > 0)
+      known_[v].classes = code_lifted(stencil, prediction, position);
+    else
+      known_[v].classes = code_plain(prediction, position);
+    known_[v].at = PackedPosition(position);
+  }
+
+ private:
+  struct Prediction {
+    int32_t at[3] = {0, 0, 0};
+    uint32_t context[3];
+  };
+  void predict(uint32_t v, const Stencil& stencil, Prediction& prediction) const;
+  uint32_t code_plain(const Prediction& prediction, Position& position);
+  uint32_t code_lifted(const Stencil& stencil, const Prediction& prediction, Position& position);
+
+  Coder& coder_;
+  const PositionWeights weights_;
+  const int bits_;
+  const int32_t mask_, half_;
+  std::vector<KnownPosition>& known_;
+};
+
+template <class Coder>
+[[gnu::always_inline]] inline void TablePositionCoder<Coder>::predict(uint32_t v, const Stencil& stencil,
+                                                                      Prediction& prediction) const {
+  const KnownPosition* known = known_.data();
+  PackedPosition sum;
+  uint32_t classes = 0;  // of each role in 10 bits: at most 12 * 17
+  for (int i = 0; i < stencil.n_neighbors; ++i) {
+    sum += known[stencil.neighbor[i]].at;
+    classes += known[stencil.neighbor[i]].classes;
+  }
+  uint32_t founded = 0;
+  if (stencil.n_parallelograms > 0) {
+    founded = stencil.extended ? 0 : stencil.n_parallelograms > 1 ? 2 : 1;
+    PackedPosition sides, opposites;
+    for (int i = 0; i < stencil.n_parallelograms; ++i) {
+      const Stencil::Parallelogram& p = stencil.parallelogram[i];
+      sides += known[p.side_1].at + known[p.side_2].at;
+      opposites += known[p.opposite].at;
+    }
+    const int64_t share = weights_.share[PositionWeights::class_of(stencil)][0];
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int32_t base = scaled_mean(sides.field(axis) - opposites.field(axis), stencil.n_parallelograms, 6);
+      const int32_t mean = scaled_mean(sum.field(axis), stencil.n_neighbors, 6);
+      prediction.at[axis] = static_cast<int32_t>((int64_t{base} * 128 + (mean - base) * share + 4096) >> 13);
+    }
+  } else if (stencil.n_neighbors > 0) {
+    for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = scaled_mean(sum.field(axis), stencil.n_neighbors, 0);
+  } else if (v > 0) {
+    for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = known[v - 1].at.field(axis);
+  }
+  int n_classes = stencil.n_neighbors;
+  if (n_classes == 0 && v > 0) {
+    classes = known[v - 1].classes;
+    n_classes = 1;
+  }
+  for (uint32_t role = 0; role < 3; ++role) {
+    const auto scale =
+        static_cast<uint32_t>(scaled_mean(static_cast<int32_t>(classes >> 10 * role & 1023), n_classes, 1));
+    prediction.context[role] = (3 * role + founded) * kPositionScales + scale;
+  }
+  for (int32_t& coordinate : prediction.at) coordinate = std::clamp(coordinate, 0, mask_);
+}
+
+template <class Coder>
+[[gnu::always_inline]] inline uint32_t TablePositionCoder<Coder>::code_plain(const Prediction& prediction,
+                                                                             Position& position) {
+  uint32_t classes = 0;
+  HeldCoder<Coder> coder = coder_;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    int32_t residual = 0;
+    if constexpr (!Coder::kDecodes) residual = ((position[axis] - prediction.at[axis] + half_) & mask_) - half_;
+    residual = code_table_residual(coder, axis, prediction.context[axis], residual);
+    position[axis] = static_cast<uint16_t>((prediction.at[axis] + residual) & mask_);
+    classes |= class_of(residual) << 10 * axis;
+  }
+  release(coder_, coder);
+  return classes;
+}
+
+// The axis nearest to the normal comes last and follows the other two.
+template <class Coder>
+uint32_t TablePositionCoder<Coder>::code_lifted(const Stencil& stencil, const Prediction& prediction,
+                                                Position& position) {
+  const std::array<int64_t, 3> normal = normal_of(stencil, known_, 2);
+  size_t order[3];
+  order_by_normal(normal, order);
+  int64_t missed[3] = {0, 0, 0};
+  uint32_t classes = 0;
+  HeldCoder<Coder> coder = coder_;
+  for (uint32_t role = 0; role < 3; ++role) {
+    const size_t axis = order[role];
+    int32_t expected = prediction.at[axis];
+    if (role == 2 && normal[axis] != 0) {
+      const int64_t sign = normal[axis] < 0 ? -1 : 1;
+      const int64_t follows =
+          round_quotient(-sign * (normal[order[0]] * missed[0] + normal[order[1]] * missed[1]), sign * normal[axis]);
+      expected = static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
+    }
+    int32_t residual = 0;
+    if constexpr (!Coder::kDecodes) residual = ((position[axis] - expected + half_) & mask_) - half_;
+    residual = code_table_residual(coder, role, prediction.context[role], residual);
+    position[axis] = static_cast<uint16_t>((expected + residual) & mask_);
+    missed[role] = position[axis] - prediction.at[axis];
+    classes |= class_of(residual) << 10 * role;
+  }
+  release(coder_, coder);
+  return classes;
+}
+
+// What precedes the positions.
+template <class Coder>
+void code_table_weights(Coder& coder, PositionWeights& weights) {
+  weights.raw = coder.raw(1, weights.raw ? 1 : 0) != 0;
+  weights.lifted = coder.raw(1, weights.lifted ? 1 : 0) != 0;
+  weights.customized = coder.raw(1, weights.customized ? 1 : 0) != 0;
+  for (int c = 0; c < PositionWeights::kClasses && weights.customized; ++c)
+    weights.share[c][0] = static_cast<int8_t>(coder.raw(8, static_cast<uint8_t>(weights.share[c][0])));
+}
+
+// Like encode_positions() and decode_positions().
+std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::span<const Position> positions,
+                                                int bits);
+Result<std::vector<Position>> decode_positions_by_tables(std::span<const uint8_t> bytes, const Stencils& stencils,
+                                                         uint32_t n_positions, int bits);
+
+}  // namespace pac::geomcodec
