@@ -43,7 +43,7 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     task.wanted = wanted.data();
     task.lambdas = lambdas.data();
   }
-  // Not where the reference is another's: measured, 3 to 5 % more bytes at equal scores there.
+  // Not where the caller replaces the reference: later pictures would live on the coarser macroblocks.
   task.vary_quantizers =
       options.effort == Effort::best && picture.quantizer_map.empty() && picture.reference == nullptr;
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
