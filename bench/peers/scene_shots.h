@@ -32,8 +32,9 @@ struct NamedScene {
   raster::Camera camera(int frame, float aspect) const;
 };
 
-// A built-in scene, NAME+moving for one whose parts move, NAME+lights (of any) for one whose lights go round, the path of a model, or `fence`: hundreds of bars thinner
-// than a pixel before textured ground, where the client's polygons say little of what H looks like.
+// A built-in scene, NAME+moving for one whose parts move, NAME+lights (of any) for one whose lights go round, the path
+// of a model, or `fence`: hundreds of bars thinner than a pixel before textured ground, where the client's polygons say
+// little of what H looks like.
 NamedScene load_scene(const std::string& name);
 
 // H, L, D, depth and ids of every frame.
