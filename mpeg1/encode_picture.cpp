@@ -43,9 +43,9 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
     task.wanted = wanted.data();
     task.lambdas = lambdas.data();
   }
+  task.is_replaced = picture.reference != nullptr;
   // Not where the caller replaces the reference: later pictures would live on the coarser macroblocks.
-  task.vary_quantizers =
-      options.effort == Effort::best && picture.quantizer_map.empty() && picture.reference == nullptr;
+  task.vary_quantizers = options.effort == Effort::best && picture.quantizer_map.empty() && !task.is_replaced;
   task.last_vectors = has_last_vectors ? last_vectors.data() : nullptr;
   task.candidates = picture.candidates.data();
   task.candidates_per_macroblock = picture.candidates_per_macroblock;

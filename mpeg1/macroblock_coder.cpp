@@ -194,12 +194,13 @@ class BandCoder : private MacroblockPlace {
   }
 
   // Tries a vector in the attempt that is not the best one: unless its prediction is so much worse than that of the
-  // search's result that what its code saves will not make up for it.
+  // search's result that what its code saves will not make up for it. A zero vector, which may skip the macroblock, is
+  // always tried, and in a replaced reference, which lies where it should, so is every vector.
   void try_vector(MotionVector vector, const SearchResult& found) {
     Attempt& attempt = attempts_[1 - best_];
     start(attempt, quantizer());
     predict(vector, attempt);
-    if (vector != found.vector) {
+    if (!task_.is_replaced && vector != MotionVector{} && vector != found.vector) {
       const uint32_t distance = motion_.satd16(source(), task_.source.stride[0], attempt.prediction.y, 16);
       if (100 * uint64_t{distance} > kWorst * found.cost) return;
     }

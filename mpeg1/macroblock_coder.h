@@ -25,6 +25,7 @@ struct PictureTask {
   const float* wanted = nullptr;
   const int64_t* lambdas = nullptr;
   bool vary_quantizers = false;                  // where another one costs less
+  bool is_replaced = false;                      // the reference is the caller's: mostly right where it is
   const MotionVector* last_vectors = nullptr;    // of the picture before, or null
   const MotionVector* coarse_vectors = nullptr;  // of each 2 x 2 macroblocks, coarse_columns a row, or null
   int coarse_columns = 0;

@@ -168,6 +168,34 @@ TEST_CASE("a picture predicted from the caller's reference decodes with the same
   CHECK_FALSE(equal(mpeg1::view_of(decode_all(bytes)[1]), encoder->reconstruction()));
 }
 
+TEST_CASE(
+    "where noise is all that a replaced reference lacks, the picture is skipped, whatever matches the noise better") {
+  Frame420 frame(160, 128), reference(160, 128);
+  uint32_t state = 1;
+  for (Frame420* to : {&frame, &reference})
+    for (GrayImage* plane : {&to->y, &to->cb, &to->cr})
+      for (int y = 0; y < plane->height(); ++y)
+        for (int x = 0; x < plane->width(); ++x) {
+          state = state * 1664525u + 1013904223u;
+          plane->row(y)[x] = static_cast<uint8_t>(126 + (state >> 16) % 5);
+        }
+  for (const Effort effort : {Effort::normal, Effort::best}) {
+    mpeg1::SequenceOptions options;
+    options.width = 160;
+    options.height = 128;
+    options.effort = effort;
+    auto encoder = mpeg1::Encoder::create(options);
+    mpeg1::PictureOptions picture;
+    picture.type = PictureType::P;
+    picture.reference = &reference;
+    picture.quantizer_scale = 16;
+    std::vector<uint8_t> bytes;
+    const auto report = encoder->add(frame, bytes, picture);
+    REQUIRE(report.ok());
+    CHECK(report->size_bytes < 40);
+  }
+}
+
 TEST_CASE("the caller's candidates lead the search to a motion it would not find") {
   std::vector<Frame420> frames;
   for (const int time : {0, 30}) frames.push_back(clip_frame(320, 64, time));  // 60 samples to the left
