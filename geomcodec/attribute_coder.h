@@ -117,4 +117,31 @@ Result<void> decode_attribute(AttributeCoder& attribute, Coder& coder, std::span
   return {};
 }
 
+// The same with a coder of its own, by tables or by adaptive models; `more` goes to the attribute's constructor.
+template <template <class> class AttributeCoder, class More>
+std::vector<uint8_t> encode_attribute(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, More more,
+                                      bool by_tables) {
+  if (by_tables) {
+    TableEncoder coder(kAttributeContexts);
+    AttributeCoder<TableEncoder> attribute(mesh, coder, more);
+    return encode_attribute(attribute, coder, vertices);
+  }
+  RangeEncoder coder;
+  AttributeCoder<RangeEncoder> attribute(mesh, coder, more);
+  return encode_attribute(attribute, coder, vertices);
+}
+template <template <class> class AttributeCoder, class More>
+Result<void> decode_attribute(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
+                              std::span<QuantizedVertex> vertices, More more, bool by_tables) {
+  if (by_tables) {
+    SymbolTables tables;
+    TableDecoder coder(bytes, kAttributeContexts, tables);
+    AttributeCoder<TableDecoder> attribute(mesh, coder, more);
+    return decode_attribute(attribute, coder, vertices);
+  }
+  RangeDecoder coder(bytes);
+  AttributeCoder<RangeDecoder> attribute(mesh, coder, more);
+  return decode_attribute(attribute, coder, vertices);
+}
+
 }  // namespace pac::geomcodec

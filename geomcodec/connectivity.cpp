@@ -207,6 +207,7 @@ class Walk {
   uint32_t code_size(uint32_t context);
   uint32_t code_size_across(uint32_t gate_size);
   bool code_corner(uint32_t k, Place place);
+  uint32_t add_vertex(uint32_t mesh_vertex);
   Step code_step(Place place, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
   Step code_far_step(AdaptiveBit* one, AdaptiveBit* two, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
   uint32_t code_old_vertex(uint32_t wanted);
@@ -366,21 +367,25 @@ bool Walk<Coder>::code_corner(uint32_t k, Place place) {
   }
   const Step step = code_step(place, candidate, wanted);
   last_step_ = step;
-  uint32_t vertex;
-  if (step == kNew) {
-    if (topology_.n_vertices == header_.n_vertices) return false;
-    vertex = topology_.n_vertices++;
-    open_.add_vertex();
-    if constexpr (!Coder::kDecodes) {
-      source_->coded_vertex[mesh_vertex] = vertex;
-      source_->order.vertex.push_back(mesh_vertex);
-    }
-  } else {
-    vertex = step == kOld ? code_old_vertex(wanted) : candidate[step];
-    if (vertex == kNone) return false;
-  }
+  const uint32_t vertex = step == kNew   ? add_vertex(mesh_vertex)
+                          : step == kOld ? code_old_vertex(wanted)
+                                         : candidate[step];
+  if (vertex == kNone) return false;
   corners_.push_back(vertex);
   return true;
+}
+
+// The next vertex, of the encoder's mesh that one. kNone: there are no more.
+template <class Coder>
+uint32_t Walk<Coder>::add_vertex(uint32_t mesh_vertex) {
+  if (topology_.n_vertices == header_.n_vertices) return kNone;
+  const uint32_t vertex = topology_.n_vertices++;
+  open_.add_vertex();
+  if constexpr (!Coder::kDecodes) {
+    source_->coded_vertex[mesh_vertex] = vertex;
+    source_->order.vertex.push_back(mesh_vertex);
+  }
+  return vertex;
 }
 
 // A number as its length and bits, all raw.
@@ -416,13 +421,7 @@ bool Walk<Coder>::add_corner(Step step, std::array<uint32_t, kOld>& candidate, u
     if (step == kOld) wanted = source_->coded_vertex[mesh_vertex];
   switch (step) {
     case kNew:
-      if (topology_.n_vertices == header_.n_vertices) return false;
-      vertex = topology_.n_vertices++;
-      open_.add_vertex();
-      if constexpr (!Coder::kDecodes) {
-        source_->coded_vertex[mesh_vertex] = vertex;
-        source_->order.vertex.push_back(mesh_vertex);
-      }
+      vertex = add_vertex(mesh_vertex);
       break;
     case kAfterAfter:
       if (candidate[kAfter] != kNone) vertex = open_.after(candidate[kAfter]);

@@ -152,27 +152,12 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
 
 std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
                                     bool by_tables) {
-  if (by_tables) {
-    TableEncoder coder(kAttributeContexts);
-    NormalCoder<TableEncoder> normals(mesh, coder, bits);
-    return encode_attribute(normals, coder, vertices);
-  }
-  RangeEncoder coder;
-  NormalCoder<RangeEncoder> normals(mesh, coder, bits);
-  return encode_attribute(normals, coder, vertices);
+  return encode_attribute<NormalCoder>(mesh, vertices, bits, by_tables);
 }
 
 Result<void> decode_normals(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
                             std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
-  if (by_tables) {
-    SymbolTables tables;
-    TableDecoder coder(bytes, kAttributeContexts, tables);
-    NormalCoder<TableDecoder> normals(mesh, coder, bits);
-    return decode_attribute(normals, coder, vertices);
-  }
-  RangeDecoder coder(bytes);
-  NormalCoder<RangeDecoder> normals(mesh, coder, bits);
-  return decode_attribute(normals, coder, vertices);
+  return decode_attribute<NormalCoder>(bytes, mesh, vertices, bits, by_tables);
 }
 
 }  // namespace pac::geomcodec

@@ -176,27 +176,12 @@ void TexcoordCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices)
 
 std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
                                       bool by_tables) {
-  if (by_tables) {
-    TableEncoder coder(kAttributeContexts);
-    TexcoordCoder<TableEncoder> texcoords(mesh, coder, bits);
-    return encode_attribute(texcoords, coder, vertices);
-  }
-  RangeEncoder coder;
-  TexcoordCoder<RangeEncoder> texcoords(mesh, coder, bits);
-  return encode_attribute(texcoords, coder, vertices);
+  return encode_attribute<TexcoordCoder>(mesh, vertices, bits, by_tables);
 }
 
 Result<void> decode_texcoords(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
                               std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
-  if (by_tables) {
-    SymbolTables tables;
-    TableDecoder coder(bytes, kAttributeContexts, tables);
-    TexcoordCoder<TableDecoder> texcoords(mesh, coder, bits);
-    return decode_attribute(texcoords, coder, vertices);
-  }
-  RangeDecoder coder(bytes);
-  TexcoordCoder<RangeDecoder> texcoords(mesh, coder, bits);
-  return decode_attribute(texcoords, coder, vertices);
+  return decode_attribute<TexcoordCoder>(bytes, mesh, vertices, bits, by_tables);
 }
 
 }  // namespace pac::geomcodec

@@ -406,12 +406,28 @@ struct SeenTile {
   }
 };
 
+std::vector<uint16_t> sums_of(const uint8_t background[3]) {
+  std::vector<uint16_t> sums;
+  for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+  return sums;
+}
+
+// What painting sums of one sample a pixel gives: rows with 5 bytes between them, `before` where the picture is not.
+constexpr ptrdiff_t kPaintStride = 3 * kTileSize + 5;
+std::vector<uint8_t> painted(const std::vector<uint16_t>& sums, int width, int height, uint8_t before) {
+  std::vector<uint8_t> rgb(static_cast<size_t>(kPaintStride) * kTileSize, before);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < 3 * width; ++x)
+      rgb[static_cast<size_t>(y * kPaintStride + x)] =
+          static_cast<uint8_t>(sums[static_cast<size_t>(x % 3 * kTilePixels + y * kTileSize + x / 3)]);
+  return rgb;
+}
+
 // The colors that packs, interpolated and accumulated, give.
 std::vector<uint16_t> colors_by_packs(const SeenTile& tile, int width, int height, int rendering,
                                       const uint8_t background[3]) {
   const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
-  std::vector<uint16_t> sums;
-  for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+  std::vector<uint16_t> sums = sums_of(background);
   std::vector<LanePack> packs(kTilePixels);
   const int n = scalar.collect_packs(tile.ids, width, height, tile.list.data(), packs.data());
   std::vector<float> rows(3 * kBatchLanes);
@@ -441,20 +457,14 @@ TEST_CASE("add_colors, paint_colors: the colors that packs give, in groups of on
       const int width = 1 + static_cast<int>(random.bits() % kTileSize), height = 32 - static_cast<int>(round % 4);
       const int rendering = static_cast<int>(round % 2);
       const std::vector<uint16_t> expected = colors_by_packs(tile, width, height, rendering, background);
-      std::vector<uint16_t> sums;
-      for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+      std::vector<uint16_t> sums = sums_of(background);
       table->tile.add_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
                              sums.data());
       REQUIRE(expected == sums);
-      const ptrdiff_t stride = 3 * kTileSize + 5;
-      std::vector<uint8_t> rgb(static_cast<size_t>(stride) * kTileSize, 77), wanted = rgb;
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < 3 * width; ++x)
-          wanted[static_cast<size_t>(y * stride + x)] =
-              static_cast<uint8_t>(expected[static_cast<size_t>(x % 3 * kTilePixels + y * kTileSize + x / 3)]);
+      std::vector<uint8_t> rgb = painted({}, 0, 0, 77);
       table->tile.paint_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
-                               rgb.data(), stride);
-      REQUIRE(wanted == rgb);
+                               rgb.data(), kPaintStride);
+      REQUIRE(painted(expected, width, height, 77) == rgb);
     }
   }
   CHECK(many > 5);
@@ -574,8 +584,7 @@ TEST_CASE(
     const int rendering = static_cast<int>(round % 2);
     std::vector<LanePack> packs(kTilePixels);
     const int n = scalar.collect_groups(tile.ids, width, height, tile.list.data(), rendering, packs.data());
-    std::vector<uint16_t> expected;
-    for (int c = 0; c < 3; ++c) expected.insert(expected.end(), kTilePixels, background[c]);
+    std::vector<uint16_t> expected = sums_of(background);
     std::vector<float> rows(9 * kBatchLanes);
     float *const lod = rows.data() + 5 * kBatchLanes, *const texels = lod + kBatchLanes;
     for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
@@ -600,20 +609,14 @@ TEST_CASE(
     for (int isa = 0; isa < kIsaCount; ++isa) {
       const Kernels* const table = kernels_for(static_cast<Isa>(isa));
       if (table == nullptr) continue;
-      std::vector<uint16_t> sums;
-      for (int c = 0; c < 3; ++c) sums.insert(sums.end(), kTilePixels, background[c]);
+      std::vector<uint16_t> sums = sums_of(background);
       table->tile.add_textured(tile.ids, width, height, tile.list.data(), rendering, tile.origin, surfaces, background,
                                sums.data());
       REQUIRE(expected == sums);
-      const ptrdiff_t stride = 3 * kTileSize + 5;
-      std::vector<uint8_t> rgb(static_cast<size_t>(stride) * kTileSize, 77), wanted = rgb;
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < 3 * width; ++x)
-          wanted[static_cast<size_t>(y * stride + x)] =
-              static_cast<uint8_t>(expected[static_cast<size_t>(x % 3 * kTilePixels + y * kTileSize + x / 3)]);
+      std::vector<uint8_t> rgb = painted({}, 0, 0, 77);
       table->tile.paint_textured(tile.ids, width, height, tile.list.data(), rendering, tile.origin, surfaces,
-                                 background, rgb.data(), stride);
-      REQUIRE(wanted == rgb);
+                                 background, rgb.data(), kPaintStride);
+      REQUIRE(painted(expected, width, height, 77) == rgb);
     }
   }
 }

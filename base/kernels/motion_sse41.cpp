@@ -125,20 +125,7 @@ uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* p
   return total;
 }
 
-// The transformed errors of block `block` of a macroblock.
-PAC_INLINE Block transformed_errors(const PredictedSamples& samples, int block) {
-  const int plane = block < 4 ? 0 : block - 3;
-  const ptrdiff_t x = block < 4 ? block % 2 * 8 : 0, y = block < 4 ? block / 2 * 8 : 0;
-  const uint8_t* source = samples.source[plane] + y * samples.source_stride[plane] + x;
-  const uint8_t* prediction = samples.prediction[plane] + y * samples.prediction_stride[plane] + x;
-  Block errors;
-  for (Lanes& row : errors.v) {
-    row = difference_row(source, prediction);
-    source += samples.source_stride[plane], prediction += samples.prediction_stride[plane];
-  }
-  fdct_2d(errors);
-  return errors;
-}
+#include "base/kernels/motion_errors_simd.inc"
 
 uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t* coefficients) {
   const __m128i below = _mm_set1_epi16(static_cast<int16_t>(threshold - 1));
