@@ -303,7 +303,7 @@ inline __m256i filter_two(const int16_t* plane, ptrdiff_t stride, Taps taps, con
 // heights among them, of which there are a few. False where there are more.
 constexpr int kHeights = 5;
 inline bool filter_down_heights(const int16_t* plane, ptrdiff_t stride, Taps taps, __m256i columns, const int32_t* y,
-                                int16_t v[kHeights][16], int32_t* at) {
+                                int16_t* v, int32_t* at) {
   const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(_mm256_castsi256_si128(columns)));
   const __m256i near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(8)), from_first);
   if (_mm256_movemask_epi8(near) != -1) return false;
@@ -316,7 +316,7 @@ inline bool filter_down_heights(const int16_t* plane, ptrdiff_t stride, Taps tap
     const __m256i same = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(height));
     const int16_t* rows = first + ((height >> 6) - kWarpTapsBefore) * stride;
     const __m256i ty = _mm256_broadcastsi128_si256(load(taps[height]));
-    store(v[i], filter_down([&](int k) { return load_16(rows + k * stride); }, ty));
+    store(v + 16 * i, filter_down([&](int k) { return load_16(rows + k * stride); }, ty));
     places = _mm256_add_epi32(places, _mm256_and_si256(same, _mm256_set1_epi32(16 * i)));
     left &= ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
     if (left != 0) continue;
@@ -327,13 +327,13 @@ inline bool filter_down_heights(const int16_t* plane, ptrdiff_t stride, Taps tap
 }
 
 inline __m128i filter_eight(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y) {
-  alignas(32) int16_t v[kHeights][16];
+  alignas(32) int16_t v[16 * kHeights];
   alignas(32) int32_t at[8];
   __m256i sums[4];
   if (filter_down_heights(plane, stride, taps, _mm256_srai_epi32(load(x), 6), y, v, at)) {
     for (int i = 0; i < 4; ++i)
-      sums[i] = _mm256_madd_epi16(load_two(v[0] + at[2 * i], v[0] + at[2 * i + 1]),
-                                  load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
+      sums[i] =
+          _mm256_madd_epi16(load_two(v + at[2 * i], v + at[2 * i + 1]), load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
   } else {
     for (int i = 0; i < 4; ++i) sums[i] = filter_two(plane, stride, taps, x + 2 * i, y + 2 * i);
   }
