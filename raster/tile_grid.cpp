@@ -95,23 +95,32 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
 // All samples of the grid, each with a color.
 void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, int rendering,
                                     std::span<const ShadingGroup> samples) {
+  const bool by_squares = fills_squares(input, rendering);  // each of which shows what is whole
   const auto count = static_cast<int>(input.pattern.size());
-  // As add_colors() and interpolate_groups() do it with the groups that are not whole.
-  const bool interpolates_planes =
-      input.has_final_colors[rendering] || input.painted[rendering] != nullptr || input.shades_lanes[rendering];
-  const auto pass = [&](const ShadingGroup& sample) {
-    return ShadePass{rendering, sample.number, count, position(area, sample.place), false, interpolates_planes};
+  const auto pass = [&](const ShadingGroup& sample) {  // inside of triangles, as groups that are not whole
+    return ShadePass{
+        rendering, sample.number, count, position(area, sample.place), false, input.shades_lanes[rendering]};
   };
   n_whole_packs_ = 0;
-  if (input.painted[rendering] == nullptr) take_whole_groups(area, rendering);  // else each square shows what is whole
+  if (!by_squares) take_whole_groups(area, rendering);
   for (const ShadingGroup& sample : samples) shade_whole_groups(input, pass(sample), sums_[rendering]);
   for (int row = 0; row < area.height; row += kGridRows) {
     const int n_rows = std::min(kGridRows, area.height - row);
     split_by_sample(area, row, n_rows);
+    uint16_t* const sums = sums_[rendering] + row * kTileSize;
+    SampleIds seen[kGridSamples];
+    for (size_t s = 0; s < samples.size(); ++s) {
+      const SamplePosition first = position(area, samples[s].place);
+      seen[s] = {sample_ids_[s], {first.x, first.y + 256 * row}};
+    }
+    if (by_squares) {
+      add_squares(input, rendering, {seen, samples.size()}, area.width, n_rows, sums);
+      continue;
+    }
     for (size_t s = 0; s < samples.size(); ++s) {
       ShadePass rows = pass(samples[s]);
-      rows.origin.y += 256 * row;
-      shade_ids(input, rows, sample_ids_[s], area.width, n_rows, sums_[rendering] + row * kTileSize);
+      rows.origin = seen[s].origin;
+      shade_ids(input, rows, seen[s].ids, area.width, n_rows, sums);
     }
   }
   put_whole_groups_back();

@@ -75,8 +75,7 @@ void TilePainter::write_first_sample(const PaintInput& input, const Area& area) 
 
 // One sample a pixel whose colors need nothing but interpolation and a texture: they go to the target without sums.
 bool TilePainter::paints_directly(const PaintInput& input, int rendering) const {
-  const bool paints = input.has_final_colors[rendering] || input.painted[rendering] != nullptr;
-  return input.pattern.size() == 1 && paints && !has_masked_ && !has_blended_;
+  return input.pattern.size() == 1 && fills_squares(input, rendering) && !has_masked_ && !has_blended_;
 }
 
 void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, int rendering) {
@@ -95,18 +94,29 @@ void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, 
                            input.painted[rendering], input.background, rgb, stride);
 }
 
+// Colors that need nothing but interpolation and a texture are found square by square, without packs.
+bool TilePainter::fills_squares(const PaintInput& input, int rendering) {
+  return input.has_final_colors[rendering] || input.painted[rendering] != nullptr;
+}
+
+void TilePainter::add_squares(const PaintInput& input, int rendering, std::span<const SampleIds> samples, int width,
+                              int height, uint16_t* sums) {
+  const TileKernels& kernels = input.kernels->tile;
+  const auto n = static_cast<int>(samples.size());
+  if (input.has_final_colors[rendering])
+    kernels.add_colors(samples.data(), n, width, height, triangles_.data(), rendering, input.background, sums);
+  else
+    kernels.add_textured(samples.data(), n, width, height, triangles_.data(), rendering, input.painted[rendering],
+                         input.background, sums);
+}
+
 // What one sample a pixel sees, rows of `ids` from the pass's origin down, to the sums of the same rows.
 void TilePainter::shade_ids(const PaintInput& input, const ShadePass& pass, const uint32_t* ids, int width, int height,
                             uint16_t* sums) {
   const TileKernels& kernels = input.kernels->tile;
-  if (input.has_final_colors[pass.rendering]) {
-    kernels.add_colors(ids, width, height, triangles_.data(), pass.rendering, pass.origin, input.background, sums);
-    return;
-  }
-  if (input.painted[pass.rendering] != nullptr) {
-    kernels.add_textured(ids, width, height, triangles_.data(), pass.rendering, pass.origin,
-                         input.painted[pass.rendering], input.background, sums);
-    return;
+  if (fills_squares(input, pass.rendering)) {
+    const SampleIds sample{ids, pass.origin};
+    return add_squares(input, pass.rendering, {&sample, 1}, width, height, sums);
   }
   const bool by_groups = input.shades_lanes[pass.rendering];
   n_packs_ = by_groups ? kernels.collect_groups(ids, width, height, triangles_.data(),

@@ -57,6 +57,9 @@ class TilePainter {
   static bool wants_ids(const PaintInput& input);
   static SamplePosition position(const Area& area, SampleOffset offset);
   void shade_first_sample(const PaintInput& input, const Area& area, int rendering);
+  static bool fills_squares(const PaintInput& input, int rendering);
+  void add_squares(const PaintInput& input, int rendering, std::span<const SampleIds> samples, int width, int height,
+                   uint16_t* sums);
   void shade_ids(const PaintInput& input, const ShadePass& pass, const uint32_t* ids, int width, int height,
                  uint16_t* sums);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);

@@ -458,8 +458,8 @@ TEST_CASE("add_colors, paint_colors: the colors that packs give, in groups of on
       const int rendering = static_cast<int>(round % 2);
       const std::vector<uint16_t> expected = colors_by_packs(tile, width, height, rendering, background);
       std::vector<uint16_t> sums = sums_of(background);
-      table->tile.add_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
-                             sums.data());
+      const SampleIds sample{tile.ids, tile.origin};
+      table->tile.add_colors(&sample, 1, width, height, tile.list.data(), rendering, background, sums.data());
       REQUIRE(expected == sums);
       std::vector<uint8_t> rgb = painted({}, 0, 0, 77);
       table->tile.paint_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
@@ -469,6 +469,33 @@ TEST_CASE("add_colors, paint_colors: the colors that packs give, in groups of on
   }
   CHECK(many > 5);
   CHECK(whole > 100);
+}
+
+TEST_CASE("add_colors, add_textured: several samples at once add what one after the other does") {
+  const uint8_t background[3] = {10, 200, 255};
+  const PaintedSurface plain[3] = {};
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    for (uint32_t round = 0; round < 20; ++round) {
+      const SeenTile tile(round);
+      std::vector<uint32_t> turned(tile.ids, tile.ids + kTilePixels);
+      std::reverse(turned.begin(), turned.end());
+      std::vector<uint32_t> few = turned;
+      std::fill(few.begin() + 64, few.begin() + 400, 0u);
+      const SampleIds samples[3] = {{tile.ids, tile.origin},
+                                    {turned.data(), {tile.origin.x + 100, tile.origin.y - 30}},
+                                    {few.data(), {tile.origin.x - 7, tile.origin.y + 64}}};
+      const auto rendering = static_cast<int>(round % 2);
+      std::vector<uint16_t> colors = sums_of(background), textured = colors, expected = colors;
+      for (const SampleIds& sample : samples)
+        table->tile.add_colors(&sample, 1, 29, 30, tile.list.data(), rendering, background, expected.data());
+      table->tile.add_colors(samples, 3, 29, 30, tile.list.data(), rendering, background, colors.data());
+      REQUIRE(expected == colors);
+      table->tile.add_textured(samples, 3, 29, 30, tile.list.data(), rendering, plain, background, textured.data());
+      REQUIRE(expected == textured);
+    }
+  }
 }
 
 TEST_CASE("collect_groups, interpolate_groups: each lane gets the bits that the pack of its own triangle gives it") {
@@ -610,7 +637,8 @@ TEST_CASE(
       const Kernels* const table = kernels_for(static_cast<Isa>(isa));
       if (table == nullptr) continue;
       std::vector<uint16_t> sums = sums_of(background);
-      table->tile.add_textured(tile.ids, width, height, tile.list.data(), rendering, tile.origin, surfaces, background,
+      const SampleIds sample{tile.ids, tile.origin};
+      table->tile.add_textured(&sample, 1, width, height, tile.list.data(), rendering, surfaces, background,
                                sums.data());
       REQUIRE(expected == sums);
       std::vector<uint8_t> rgb = painted({}, 0, 0, 77);

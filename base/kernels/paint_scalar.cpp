@@ -38,16 +38,18 @@ void for_each_pack(const uint32_t* ids, int width, int height, const RasterTrian
   }
 }
 
-void add_textured(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
-                  SamplePosition origin, const PaintedSurface* surfaces, const uint8_t background[3], uint16_t* sums) {
-  for_each_pack(ids, width, height, triangles, rendering, origin, surfaces,
-                [&](const LanePack& pack, const float(&colors)[3][8]) {
-                  for (int k = 0; k < 8; ++k)
-                    for (int c = 0; c < 3 && (pack.mask >> k & 1) != 0; ++c) {
-                      uint16_t& sum = sums[(c * kTileSize + pack.y) * kTileSize + pack.x + k];
-                      sum = static_cast<uint16_t>(sum + static_cast<int>(colors[c][k]) - background[c]);
-                    }
-                });
+void add_textured(const SampleIds* samples, int n_samples, int width, int height,
+                  const RasterTriangle* const* triangles, int rendering, const PaintedSurface* surfaces,
+                  const uint8_t background[3], uint16_t* sums) {
+  const auto add = [&](const LanePack& pack, const float(&colors)[3][8]) {
+    for (int k = 0; k < 8; ++k)
+      for (int c = 0; c < 3 && (pack.mask >> k & 1) != 0; ++c) {
+        uint16_t& sum = sums[(c * kTileSize + pack.y) * kTileSize + pack.x + k];
+        sum = static_cast<uint16_t>(sum + static_cast<int>(colors[c][k]) - background[c]);
+      }
+  };
+  for (int s = 0; s < n_samples; ++s)
+    for_each_pack(samples[s].ids, width, height, triangles, rendering, samples[s].origin, surfaces, add);
 }
 
 void paint_textured(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,

@@ -119,6 +119,12 @@ struct TextureSampler {
   int32_t pitch[kMaxMipLevels];                         // width + 1
 };
 
+// What one sample of each pixel sees: ids in rows kTileSize apart, and where the sample of pixel (0, 0) is.
+struct SampleIds {
+  const uint32_t* ids;
+  SamplePosition origin;
+};
+
 // What add_textured() and paint_textured() shade by one RasterTriangle::state: attributes 0..2 are the color and, where
 // there is a texture to multiply it, 3 and 4 its coordinates.
 struct PaintedSurface {
@@ -299,11 +305,12 @@ struct TileKernels {
   void (*accumulate_lanes)(const LaneSample* samples, int n, bool weighted, const float* color, const float* texels,
                            const float* specular, const uint8_t background[3], uint16_t* sums);
 
-  // collect_packs(), interpolate() inside of attributes 0..2 and accumulate() of them as final colors, in one: the
-  // colors of all samples in the ids, which are inside their triangles, are added to the sums. Groups of eight are read
-  // whole. Records of attributes as for interpolate_lanes().
-  void (*add_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
-                     SamplePosition origin, const uint8_t background[3], uint16_t* sums);
+  // collect_packs(), interpolate() inside of attributes 0..2 and accumulate() of them as final colors, in one, for each
+  // of the samples: the colors of all that is in their ids, which is inside its triangles, are added to the sums.
+  // Groups of eight are read whole. Records of attributes as for interpolate_lanes().
+  void (*add_colors)(const SampleIds* samples, int n_samples, int width, int height,
+                     const RasterTriangle* const* triangles, int rendering, const uint8_t background[3],
+                     uint16_t* sums);
 
   // The same for pictures of one sample a pixel: width x height pixels of RGB bytes, rows `stride` bytes apart.
   void (*paint_colors)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
@@ -312,8 +319,8 @@ struct TileKernels {
 
   // The same two with textures: `surfaces` of the triangles' states in the rendering. What collect_groups(),
   // interpolate_groups(), sample_texture() and accumulate() do, in one.
-  void (*add_textured)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
-                       int rendering, SamplePosition origin, const PaintedSurface* surfaces,
+  void (*add_textured)(const SampleIds* samples, int n_samples, int width, int height,
+                       const RasterTriangle* const* triangles, int rendering, const PaintedSurface* surfaces,
                        const uint8_t background[3], uint16_t* sums);
   void (*paint_textured)(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles,
                          int rendering, SamplePosition origin, const PaintedSurface* surfaces,

@@ -329,17 +329,18 @@ void interpolate_groups(const LanePack* packs, int n, const uint32_t* ids, const
   }
 }
 
-void add_colors(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
-                SamplePosition origin, const uint8_t background[3], uint16_t* sums) {
+void add_colors(const SampleIds* samples, int n_samples, int width, int height, const RasterTriangle* const* triangles,
+                int rendering, const uint8_t background[3], uint16_t* sums) {
   float rows[3 * kBatchLanes];
   const InterpolateTarget target{rendering, 3, rows, nullptr, 0, 0, 0, 0};
-  for (int py = 0; py < height; ++py)
-    for (int px = 0; px < (width + 7) / 8 * 8; ++px) {
-      const uint32_t id = ids[py * kTileSize + px];
-      if (id == 0) continue;
-      interpolate_pixel(*triangles[id - 1], origin, px, py, target, 0);
-      accumulate_lane(0, py * kTileSize + px, 1, rows, nullptr, nullptr, background, sums);
-    }
+  for (int s = 0; s < n_samples; ++s)
+    for (int py = 0; py < height; ++py)
+      for (int px = 0; px < (width + 7) / 8 * 8; ++px) {
+        const uint32_t id = samples[s].ids[py * kTileSize + px];
+        if (id == 0) continue;
+        interpolate_pixel(*triangles[id - 1], samples[s].origin, px, py, target, 0);
+        accumulate_lane(0, py * kTileSize + px, 1, rows, nullptr, nullptr, background, sums);
+      }
 }
 
 void paint_colors(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
