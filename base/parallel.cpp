@@ -16,6 +16,11 @@
 
 namespace pac {
 
+static void run_steps_in_order(std::span<const int> lengths, void (*call)(void*, int, int), void* context) {
+  for (int chain = 0; chain < static_cast<int>(lengths.size()); ++chain)
+    for (int step = 0; step < lengths[static_cast<size_t>(chain)]; ++step) call(context, chain, step);
+}
+
 #if PAC_THREADS
 
 // Some ten microseconds: loops follow one another, and to wake a thread that sleeps takes longer than to watch that
@@ -119,6 +124,48 @@ void ThreadPool::run(int64_t count, void (*call)(void*, int64_t), void* context)
   state.done.wait(lock, is_done);
 }
 
+// Who takes a step next, and of which chain.
+class ChainQueue {
+ public:
+  explicit ChainQueue(std::span<const int> lengths) : chains_(lengths.size()) {
+    for (size_t i = 0; i < lengths.size(); ++i) chains_[i].length = lengths[i];
+  }
+
+  // The chain whose step `last` (-1: none) is done, or another that nobody is busy with; -1: there is none. Then as
+  // many threads are busy as chains are left: nobody is missed who leaves.
+  int take(int last) {
+    std::lock_guard lock(mutex_);
+    if (last >= 0) at(last).is_busy = false;
+    int best = last >= 0 && left(last) > 0 ? last : -1;
+    for (int i = 0; i < static_cast<int>(chains_.size()); ++i)
+      if (!at(i).is_busy && left(i) > (best >= 0 ? left(best) : 0)) best = i;
+    if (best >= 0) at(best).is_busy = true;
+    return best;
+  }
+  // Of a chain that was taken.
+  int next_step(int chain) { return at(chain).next++; }
+
+ private:
+  struct Chain {
+    int next = 0, length = 0;
+    bool is_busy = false;
+  };
+  Chain& at(int i) { return chains_[static_cast<size_t>(i)]; }
+  int left(int i) { return at(i).length - at(i).next; }
+
+  std::mutex mutex_;
+  std::vector<Chain> chains_;
+};
+
+void ThreadPool::run_steps(std::span<const int> lengths, void (*call)(void*, int, int), void* context) {
+  if (thread_count() == 1 || lengths.size() < 2) return run_steps_in_order(lengths, call, context);
+  ChainQueue queue(lengths);
+  for_each(thread_count(), [&](int64_t) {
+    for (int chain = queue.take(-1); chain >= 0; chain = queue.take(chain))
+      call(context, chain, queue.next_step(chain));
+  });
+}
+
 #else
 
 struct ThreadPool::State {};
@@ -132,6 +179,9 @@ int ThreadPool::thread_count() const {
 }
 void ThreadPool::run(int64_t count, void (*call)(void*, int64_t), void* context) {
   for (int64_t i = 0; i < count; ++i) call(context, i);
+}
+void ThreadPool::run_steps(std::span<const int> lengths, void (*call)(void*, int, int), void* context) {
+  run_steps_in_order(lengths, call, context);
 }
 
 #endif

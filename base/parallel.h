@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <type_traits>
 
 namespace pac {
@@ -29,7 +30,18 @@ class ThreadPool {
         count, [](void* context, int64_t index) { (*static_cast<std::remove_reference_t<Fn>*>(context))(index); }, &fn);
   }
 
+  // Calls fn(chain, step) for each step in [0, lengths[chain]) of each chain: the steps of a chain one after another in
+  // order, chains side by side, and a thread goes on with the chain that has most steps left. Otherwise as for_each().
+  template <class Fn>
+  void for_each_step(std::span<const int> lengths, Fn&& fn) {
+    run_steps(
+        lengths,
+        [](void* context, int chain, int step) { (*static_cast<std::remove_reference_t<Fn>*>(context))(chain, step); },
+        &fn);
+  }
+
  private:
+  void run_steps(std::span<const int> lengths, void (*call)(void*, int, int), void* context);
   void run(int64_t count, void (*call)(void*, int64_t), void* context);
   struct State;
   std::unique_ptr<State> state_;

@@ -11,6 +11,7 @@ constexpr int kReduction = 4;
 constexpr int kBlock = 8;                  // samples of the small pictures: 2 macroblocks
 constexpr uint32_t kStillSad = 96;         // of a block that needs no search: 1.5 a sample
 constexpr uint32_t kOffsetCost = 1;        // of a sample's distance from zero, so that flat blocks stay
+constexpr int kRowsAtOnce = 16;            // of the small pictures, that a thread makes
 constexpr int kHalfPels = 2 * kReduction;  // of a sample of the small pictures
 
 }  // namespace
@@ -22,10 +23,17 @@ CoarseMotion::CoarseMotion(int columns, int rows)
       block_rows_((rows + 1) / 2) {}
 
 // Means of 4 x 4 samples.
-void CoarseMotion::reduce(const Planes& frame, std::vector<uint8_t>& small) const {
+void CoarseMotion::reduce(const Planes& frame, ThreadPool& pool, std::vector<uint8_t>& small) const {
   small.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  pool.for_each((height_ + kRowsAtOnce - 1) / kRowsAtOnce, [&](int64_t i) {
+    const int first = kRowsAtOnce * static_cast<int>(i);
+    reduce_rows(frame, first, std::min(first + kRowsAtOnce, height_), small);
+  });
+}
+
+void CoarseMotion::reduce_rows(const Planes& frame, int first, int end, std::vector<uint8_t>& small) const {
   std::vector<uint16_t> sums(static_cast<size_t>(kReduction * width_));
-  for (int y = 0; y < height_; ++y) {
+  for (int y = first; y < end; ++y) {
     const uint8_t* row = frame.data[0] + kReduction * y * frame.stride[0];
     const ptrdiff_t stride = frame.stride[0];
     for (size_t x = 0; x < sums.size(); ++x) {
@@ -38,10 +46,10 @@ void CoarseMotion::reduce(const Planes& frame, std::vector<uint8_t>& small) cons
   }
 }
 
-void CoarseMotion::start_picture(const Planes& source) {
+void CoarseMotion::start_picture(const Planes& source, ThreadPool& pool) {
   is_searched_ = false;
   has_source_ = width_ >= kBlock && height_ >= kBlock;
-  if (has_source_) reduce(source, source_);
+  if (has_source_) reduce(source, pool, source_);
 }
 
 void CoarseMotion::finish_picture() {
@@ -87,7 +95,7 @@ const MotionVector* CoarseMotion::search(const Planes* replaced, int f_code, con
   if (!has_source_ || (!has_before_ && replaced == nullptr)) return nullptr;
   if (is_searched_) return vectors_.data();
   if (replaced != nullptr) {
-    reduce(*replaced, before_);
+    reduce(*replaced, pool, before_);
     has_before_ = true;
   }
   vectors_.resize(static_cast<size_t>(block_columns_) * static_cast<size_t>(block_rows_));

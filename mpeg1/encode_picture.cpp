@@ -61,7 +61,10 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
 
 void Encoder::State::code_picture(const PictureTask& task) {
   is_touched = true;
-  pool.for_each(static_cast<int64_t>(bands.size()), [&](int64_t i) { code_band(task, bands[static_cast<size_t>(i)]); });
+  pool.for_each_step(band_rows, [&](int i, int step) {
+    Band& band = bands[static_cast<size_t>(i)];
+    code_row(task, band, band.first_row + step);
+  });
 }
 
 PictureReport Encoder::State::write_picture(PictureType type, std::vector<uint8_t>& out) {
@@ -75,9 +78,12 @@ PictureReport Encoder::State::write_picture(PictureType type, std::vector<uint8_
   if (has_rate) picture.header.vbv_delay = rate.vbv_delay(static_cast<int64_t>(8 * header_bytes));
   if (type == PictureType::P) picture.header.forward_f_code = needed_f_code(picture);
   write_picture_header(picture.header, out);
-  pool.for_each(static_cast<int64_t>(bands.size()),
-                [&](int64_t i) { write_band(picture, bands[static_cast<size_t>(i)], bits[static_cast<size_t>(i)]); });
-  join_bands(bits, out);
+  pool.for_each(rows, [&](int64_t i) {
+    const auto row = static_cast<int>(i);
+    const Band& band = *std::find_if(bands.begin(), bands.end(), [&](const Band& b) { return row < b.end_row; });
+    write_rows(picture, band.tokens.data(), row, row + 1, bits[static_cast<size_t>(i)]);
+  });
+  join_rows(bits, out);
   PictureReport report;
   report.type = type;
   for (const Macroblock& macroblock : macroblocks) {

@@ -66,10 +66,11 @@ Encoder::State::State(const SequenceOptions& o, Isa isa)
   quantizers.resize(count);
   const int n_bands = std::max(1, rows / kRowsPerBand);
   bands.resize(static_cast<size_t>(n_bands));
-  bits.resize(bands.size());
+  bits.resize(static_cast<size_t>(rows));
   for (int i = 0; i < n_bands; ++i) {
     bands[static_cast<size_t>(i)].first_row = rows * i / n_bands;
     bands[static_cast<size_t>(i)].end_row = rows * (i + 1) / n_bands;
+    band_rows.push_back(rows * (i + 1) / n_bands - rows * i / n_bands);
   }
   if (o.adapt_matrices && o.effort != Effort::fast) {
     statistics.resize(bands.size());

@@ -74,7 +74,8 @@ struct Encoder::State {
   std::vector<int64_t> lambdas;  // with them
   std::vector<uint8_t> bits_of_difference;
   std::vector<Band> bands;
-  std::vector<BandBits> bits;
+  std::vector<int> band_rows;                     // of each band, how many
+  std::vector<RowBits> bits;                      // of each row
   std::vector<CoefficientStatistics> statistics;  // of each band; empty: matrices stay
   bool has_rate = false;
   RateControl rate;

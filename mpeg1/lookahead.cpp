@@ -87,13 +87,12 @@ float Lookahead::share(const Step& step, int column, int row, MotionVector vecto
   return static_cast<float>(std::max(0.0, of_motion) * of_quantizer);
 }
 
-void Lookahead::predict_band(const Step& step, const Band& band, Vectors& vectors, Shares& shares) const {
-  for (int row = band.first_row; row < band.end_row; ++row)
-    for (int column = 0; column < columns_; ++column) {
-      const auto i = static_cast<size_t>(row * columns_ + column);
-      vectors[i] = search(step, band, column, row, vectors);
-      shares[i] = share(step, column, row, vectors[i]);
-    }
+void Lookahead::predict_row(const Step& step, const Band& band, int row, Vectors& vectors, Shares& shares) const {
+  for (int column = 0; column < columns_; ++column) {
+    const auto i = static_cast<size_t>(row * columns_ + column);
+    vectors[i] = search(step, band, column, row, vectors);
+    shares[i] = share(step, column, row, vectors[i]);
+  }
 }
 
 // What the macroblocks are worth goes to those they are predicted from, by the area that each of them lends.
@@ -122,6 +121,8 @@ void Lookahead::look(const Frame420& first, std::span<const Frame420* const> fol
   std::vector<uint8_t> bits_of_difference(kMaxDifference + 1);
   for (int i = 0; i <= kMaxDifference; ++i)
     bits_of_difference[static_cast<size_t>(i)] = static_cast<uint8_t>(motion_bits(std::min(i, 60), 0, 1));
+  std::vector<int> band_rows;
+  for (const Band& band : bands) band_rows.push_back(band.end_row - band.first_row);
   CoarseMotion coarse(columns_, rows_);
   Frame420 padded[2];
   Step step;
@@ -129,23 +130,27 @@ void Lookahead::look(const Frame420& first, std::span<const Frame420* const> fol
   step.quantizer_scale = quantizer_scale;
   step.bits_of_difference = bits_of_difference.data();
   step.source = whole_macroblocks(first, padded[0]);
-  coarse.start_picture(step.source);
+  coarse.start_picture(step.source, pool);
   coarse.finish_picture();
   for (size_t i = 0; i < following.size(); ++i) {
     step.before = step.source;
     step.source = whole_macroblocks(*following[i], padded[(i + 1) & 1]);
-    coarse.start_picture(step.source);
+    coarse.start_picture(step.source, pool);
     step.coarse_vectors = coarse.search(nullptr, kFCode, kernels, pool);
     step.coarse_columns = coarse.block_columns();
     step.last = i > 0 ? &vectors_[i - 1] : nullptr;
-    pool.for_each(static_cast<int64_t>(bands.size()),
-                  [&](int64_t band) { predict_band(step, bands[static_cast<size_t>(band)], vectors_[i], shares[i]); });
+    pool.for_each_step(band_rows, [&](int k, int row) {
+      const Band& band = bands[static_cast<size_t>(k)];
+      predict_row(step, band, band.first_row + row, vectors_[i], shares[i]);
+    });
     coarse.finish_picture();
   }
   scales_.assign(following.size() + 1, std::vector<float>(count, 1.0F));
   for (size_t i = following.size(); i-- > 0;) pass_on(vectors_[i], shares[i], scales_[i + 1], scales_[i]);
-  for (std::vector<float>& of_picture : scales_)
-    for (float& worth : of_picture) worth = static_cast<float>(exact_pow(static_cast<double>(worth), kExponent));
+  pool.for_each(static_cast<int64_t>(scales_.size()), [&](int64_t i) {
+    for (float& worth : scales_[static_cast<size_t>(i)])
+      worth = static_cast<float>(exact_pow(static_cast<double>(worth), kExponent));
+  });
 }
 
 }  // namespace pac::mpeg1

@@ -47,7 +47,7 @@ class Lookahead {
   using Shares = std::vector<float>;  // of the errors there that they take over, 0..1
   struct Step;                        // from one frame to the next
 
-  void predict_band(const Step& step, const Band& band, Vectors& vectors, Shares& shares) const;
+  void predict_row(const Step& step, const Band& band, int row, Vectors& vectors, Shares& shares) const;
   MotionVector search(const Step& step, const Band& band, int column, int row, const Vectors& vectors) const;
   float share(const Step& step, int column, int row, MotionVector vector) const;
   void pass_on(const Vectors& vectors, const Shares& shares, const std::vector<float>& worth,

@@ -34,10 +34,12 @@ inline int token_level(Token token) {
 
 class CoefficientStatistics;
 
-// Macroblock rows that one thread codes from top to bottom. How a picture is divided depends on its size only.
+// Macroblock rows that are coded from top to bottom, each after the one above: what they know of one another ends at
+// the band's. How a picture is divided depends on its size only.
 struct Band {
   int first_row = 0, end_row = 0;
   std::vector<Token> tokens;
+  int last_quantizer = 0;  // of the last macroblock with coefficients in the rows so far and their slice; 0: none
   CoefficientStatistics* statistics = nullptr;  // of its coefficients, where anybody asks
 };
 

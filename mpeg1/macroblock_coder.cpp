@@ -20,20 +20,21 @@ constexpr float kLeastChange = 0.7F, kLeastShare = 0.2F;
 // Distance (SATD) in percent of the search's result with its bits, up to which another vector may turn out cheaper.
 constexpr uint64_t kWorst = 110;
 
-class BandCoder : private MacroblockPlace {
+class RowCoder : private MacroblockPlace {
  public:
-  BandCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band), fast_(task, band) {}
+  RowCoder(const PictureTask& task, Band& band) : MacroblockPlace(task, band), fast_(task, band) {}
 
-  void code() {
-    band_.tokens.clear();
-    for (row_ = band_.first_row; row_ < band_.end_row; ++row_)
-      for (column_ = 0; column_ < task_.columns; ++column_) code_macroblock();
+  void code(int row) {
+    row_ = row;
+    if (row == band_.first_row) band_.tokens.clear();
+    last_quantizer_ = row == band_.first_row || row % task_.slice_rows == 0 ? 0 : band_.last_quantizer;
+    for (column_ = 0; column_ < task_.columns; ++column_) code_macroblock();
+    band_.last_quantizer = last_quantizer_;
   }
 
  private:
   void code_macroblock() {
     task_.macroblocks[address()] = {};
-    if (column_ == 0 && row_ % task_.slice_rows == 0) last_quantizer_ = 0;
     if (task_.wanted != nullptr) settle_quantizer();
     for (Attempt& attempt : attempts_) start(attempt, quantizer());
     const bool forced = task_.must_be_intra != nullptr && task_.must_be_intra[address()] != 0;
@@ -316,8 +317,8 @@ class BandCoder : private MacroblockPlace {
 
 }  // namespace
 
-void code_band(const PictureTask& task, Band& band) {
-  BandCoder(task, band).code();
+void code_row(const PictureTask& task, Band& band, int row) {
+  RowCoder(task, band).code(row);
 }
 
 }  // namespace pac::mpeg1

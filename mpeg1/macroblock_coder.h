@@ -40,7 +40,8 @@ struct PictureTask {
   Macroblock* macroblocks = nullptr;            // result, raster order
 };
 
-// Codes rows [band.first_row, band.end_row): fills their macroblocks, the band's tokens and the target's samples.
-void code_band(const PictureTask& task, Band& band);
+// Codes a row of the band, the row above having been coded before if it is the band's, too: fills its macroblocks, the
+// band's tokens and the target's samples.
+void code_row(const PictureTask& task, Band& band, int row);
 
 }  // namespace pac::mpeg1

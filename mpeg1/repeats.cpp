@@ -51,12 +51,10 @@ class Repeater {
     picture.columns = columns;
     picture.rows = picture.slice_rows = rows;
     picture.macroblocks = macroblocks.data();
-    Band band;
-    band.end_row = rows;
-    BandBits bits;
-    write_band(picture, band, bits);
+    RowBits bits;
+    write_rows(picture, nullptr, 0, rows, bits);
     repeat_slice_.clear();
-    join_bands({&bits, 1}, repeat_slice_);
+    join_rows({&bits, 1}, repeat_slice_);
   }
 
   Result<void> take_group(std::span<const uint8_t> payload, uint64_t offset) {

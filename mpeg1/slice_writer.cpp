@@ -34,15 +34,15 @@ void put_last(const ShortCode& code, FastBitWriter& bits) {
   bits.put(code.bits, code.length);
 }
 
-class BandWriter {
+class RowWriter {
  public:
   // `tail`, if not null, takes a short last macroblock: where in its byte it will begin is not known yet.
-  BandWriter(const PictureToWrite& picture, const Band& band, FastBitWriter& bits, ShortCode* tail)
-      : picture_(picture), band_(band), bits_(bits), tail_(tail) {}
+  RowWriter(const PictureToWrite& picture, const Token* tokens, FastBitWriter& bits, ShortCode* tail)
+      : picture_(picture), tokens_(tokens), bits_(bits), tail_(tail) {}
 
   // Rows [first, end), of which only the first may begin a slice that is not the picture's own.
   void write(int first, int end) {
-    if (first % picture_.slice_rows != 0) resume();
+    if (first % picture_.slice_rows != 0) resume(first);
     for (int row = first; row < end; ++row) {
       if (row % picture_.slice_rows == 0) start_slice(row);
       for (int address = row * picture_.columns; address < (row + 1) * picture_.columns; ++address)
@@ -72,20 +72,19 @@ class BandWriter {
     bits_.put(0, 1);  // extra_bit_slice
   }
 
-  // The state in the middle of a slice.
-  void resume() {
-    const int slice_row = band_.first_row / picture_.slice_rows * picture_.slice_rows;
-    const int begin = slice_row * picture_.columns, end = band_.first_row * picture_.columns;
-    predictions_.quantizer = first_quantizer(slice_row);
-    predictions_.last_address = begin - 1;
-    for (int address = begin; address < end; ++address)
-      if (has_coefficients(picture_.macroblocks[address]))
-        predictions_.quantizer = picture_.macroblocks[address].quantizer;
-    for (int address = end - 1; address >= begin; --address) {
-      if (picture_.macroblocks[address].kind == MacroblockKind::skipped) continue;
-      predictions_.last_address = address;
-      break;
-    }
+  // The state in the middle of a slice, before that row.
+  void resume(int row) {
+    const int slice_row = row / picture_.slice_rows * picture_.slice_rows;
+    const int begin = slice_row * picture_.columns, end = row * picture_.columns;
+    const auto last_before = [&](auto&& is_so) {
+      int address = end - 1;
+      while (address >= begin && !is_so(picture_.macroblocks[address])) --address;
+      return address;
+    };
+    const int last_coded = last_before(has_coefficients);
+    predictions_.quantizer =
+        last_coded >= begin ? picture_.macroblocks[last_coded].quantizer : first_quantizer(slice_row);
+    predictions_.last_address = last_before([](const Macroblock& m) { return m.kind != MacroblockKind::skipped; });
     const Macroblock& last = picture_.macroblocks[end - 1];  // the first macroblock of a slice is never skipped
     predictions_.vector = last.vector;
     if (last.kind == MacroblockKind::intra)
@@ -177,7 +176,7 @@ class BandWriter {
         (address + 1) % picture_.columns == 0 && (end_row % picture_.slice_rows == 0 || end_row == picture_.rows);
     if (!is_last || has_coefficients(picture_.macroblocks[address])) return write_macroblock(address);
     FastBitWriter alone;
-    BandWriter writer(picture_, band_, alone, nullptr);
+    RowWriter writer(picture_, tokens_, alone, nullptr);
     writer.predictions_ = predictions_;
     writer.write_macroblock(address);
     if (alone.size_bits() >= kByte) return bits_.append(alone);
@@ -211,7 +210,7 @@ class BandWriter {
   void write_blocks(const Macroblock& macroblock) {
     constexpr size_t kMostBits = 6 * (64 * 28 + 16 + 2);  // escapes, DC and end_of_block
     const bool is_intra = macroblock.kind == MacroblockKind::intra;
-    const Token* tokens = band_.tokens.data() + macroblock.first_token;
+    const Token* tokens = tokens_ + macroblock.first_token;
     FastBitWriter::Loan bits = bits_.lend(kMostBits);
     for (int block = 0; block < 6; ++block) {
       if (is_intra)
@@ -225,7 +224,7 @@ class BandWriter {
   }
 
   const PictureToWrite& picture_;
-  const Band& band_;
+  const Token* tokens_;
   FastBitWriter& bits_;
   ShortCode* tail_;
   Predictions predictions_;
@@ -251,24 +250,24 @@ int needed_f_code(const PictureToWrite& picture) {
   return f_code;
 }
 
-void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits) {
-  const int next_slice = (band.first_row + picture.slice_rows - 1) / picture.slice_rows * picture.slice_rows;
-  const int split = std::min(next_slice, band.end_row);
+void write_rows(const PictureToWrite& picture, const Token* tokens, int first_row, int end_row, RowBits& bits) {
+  const int next_slice = (first_row + picture.slice_rows - 1) / picture.slice_rows * picture.slice_rows;
+  const int split = std::min(next_slice, end_row);
   bits.head.clear();
   bits.slices.clear();
   bits.tail = {};
-  if (split > band.first_row) BandWriter(picture, band, bits.head, &bits.tail).write(band.first_row, split);
-  if (split < band.end_row) BandWriter(picture, band, bits.slices, nullptr).write(split, band.end_row);
+  if (split > first_row) RowWriter(picture, tokens, bits.head, &bits.tail).write(first_row, split);
+  if (split < end_row) RowWriter(picture, tokens, bits.slices, nullptr).write(split, end_row);
 }
 
-void join_bands(std::span<const BandBits> bands, std::vector<uint8_t>& out) {
+void join_rows(std::span<const RowBits> rows, std::vector<uint8_t>& out) {
   FastBitWriter all;
-  for (const BandBits& band : bands) {
-    all.append(band.head);
-    if (band.tail.length != 0) put_last(band.tail, all);
-    if (band.slices.size_bits() == 0) continue;
+  for (const RowBits& row : rows) {
+    all.append(row.head);
+    if (row.tail.length != 0) put_last(row.tail, all);
+    if (row.slices.size_bits() == 0) continue;
     all.align_to_byte();
-    all.append(band.slices);
+    all.append(row.slices);
   }
   all.append_to(out);
 }

@@ -30,16 +30,16 @@ int motion_bits(int vector, int predicted, int r_size);
 // The smallest f_code that reaches every vector of the picture, 1..7.
 int needed_f_code(const PictureToWrite& picture);
 
-// Writes the band's macroblocks. A slice that began in an earlier band goes on: what it predicts from is found in the
-// macroblocks before.
-// The bits before the band's first slice start code, which go on where the band before ended, and those from it on.
-struct BandBits {
+// The bits before the rows' first slice start code, which go on where the rows before ended, and those from it on.
+struct RowBits {
   FastBitWriter head, slices;
   ShortCode tail;  // after head: the last macroblock of the slice that goes on there, where it is as short as that
 };
-void write_band(const PictureToWrite& picture, const Band& band, BandBits& bits);
+// Writes the macroblocks of rows [first_row, end_row), which are of one band with these tokens. A slice that began in
+// an earlier row goes on: what it predicts from is found in the macroblocks before.
+void write_rows(const PictureToWrite& picture, const Token* tokens, int first_row, int end_row, RowBits& bits);
 
-// Appends all bands' bits, in order, slices on byte boundaries.
-void join_bands(std::span<const BandBits> bands, std::vector<uint8_t>& out);
+// Appends the bits of all rows, in order, slices on byte boundaries.
+void join_rows(std::span<const RowBits> rows, std::vector<uint8_t>& out);
 
 }  // namespace pac::mpeg1

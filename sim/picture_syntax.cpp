@@ -200,10 +200,9 @@ bool read_picture(std::span<const uint8_t> bytes, int columns, int rows, Picture
 void write_picture(const PictureSyntax& picture, int columns, int rows, Bytes& out) {
   mpeg1::write_picture_header(picture.header, out);
   const mpeg1::PictureToWrite task{picture.header, columns, rows, rows, picture.macroblocks.data()};
-  mpeg1::Band band{0, rows, picture.tokens};
-  mpeg1::BandBits bits;
-  mpeg1::write_band(task, band, bits);
-  mpeg1::join_bands({&bits, 1}, out);
+  mpeg1::RowBits bits;
+  mpeg1::write_rows(task, picture.tokens.data(), 0, rows, bits);
+  mpeg1::join_rows({&bits, 1}, out);
 }
 
 }  // namespace pac::sim

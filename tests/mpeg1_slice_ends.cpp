@@ -9,7 +9,7 @@ namespace pac::test {
 namespace {
 
 // A P picture of two macroblocks, both with this vector and without coefficients, in one slice.
-std::vector<uint8_t> two_macroblocks(mpeg1::MotionVector vector, bool in_two_bands) {
+std::vector<uint8_t> two_macroblocks(mpeg1::MotionVector vector, bool one_by_one) {
   mpeg1::Macroblock macroblocks[2];
   for (mpeg1::Macroblock& macroblock : macroblocks) {
     macroblock.kind = mpeg1::MacroblockKind::inter;
@@ -21,15 +21,11 @@ std::vector<uint8_t> two_macroblocks(mpeg1::MotionVector vector, bool in_two_ban
   picture.columns = 1;
   picture.rows = picture.slice_rows = 2;
   picture.macroblocks = macroblocks;
-  std::vector<mpeg1::BandBits> bits(in_two_bands ? 2 : 1);
-  for (size_t i = 0; i < bits.size(); ++i) {
-    mpeg1::Band band;
-    band.first_row = static_cast<int>(i);
-    band.end_row = i + 1 == bits.size() ? 2 : 1;
-    mpeg1::write_band(picture, band, bits[i]);
-  }
+  std::vector<mpeg1::RowBits> bits(one_by_one ? 2 : 1);
+  for (size_t i = 0; i < bits.size(); ++i)
+    mpeg1::write_rows(picture, nullptr, static_cast<int>(i), i + 1 == bits.size() ? 2 : 1, bits[i]);
   std::vector<uint8_t> bytes;
-  mpeg1::join_bands(bits, bytes);
+  mpeg1::join_rows(bits, bytes);
   return bytes;
 }
 

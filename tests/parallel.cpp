@@ -22,6 +22,22 @@ TEST_CASE("every index runs exactly once, whatever the numbers of threads and in
   }
 }
 
+TEST_CASE("steps of chains are taken once each, those of a chain in order, on any number of threads") {
+  const std::vector<int> lengths = {7, 0, 40, 1, 12};
+  for (const int n_threads : {1, 2, 3, 8}) {
+    ThreadPool pool(n_threads);
+    for (int round = 0; round < 50; ++round) {
+      std::vector<int> reached(lengths.size());  // written without a lock: only by one thread after another
+      std::atomic<int> n_out_of_order{0};
+      pool.for_each_step(lengths, [&](int chain, int step) {
+        if (reached[static_cast<size_t>(chain)]++ != step) ++n_out_of_order;
+      });
+      REQUIRE(n_out_of_order == 0);
+      REQUIRE(reached == lengths);
+    }
+  }
+}
+
 TEST_CASE("many small loops on one pool: none starts before the one before has ended") {
   ThreadPool pool(4);
   std::vector<int> values(16, 0);
