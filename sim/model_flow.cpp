@@ -26,10 +26,6 @@ void ModelFlow::prepare(const raster::Camera& camera, std::span<const glm::mat4>
     way_of_id_[i] = movers_[i] < way_of_mover.size() ? way_of_mover[movers_[i]] : kNoWay;
 }
 
-void ModelFlow::find_row(PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out) const {
-  reproject_row(ways_, way_of_id_, depth, id, y, out, isa_);
-}
-
 const Flow& ModelFlow::find(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
                             std::span<const glm::mat4> objects) {
   prepare(camera, objects);

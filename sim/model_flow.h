@@ -20,9 +20,10 @@ class ModelFlow {
   const Flow& find(PlaneView<const float> depth, PlaneView<const uint32_t> id, const raster::Camera& camera,
                    std::span<const glm::mat4> objects);
 
-  // The same row by row: once for the frame, then each row.
+  // The same by rows: once for the frame, then each row's runs of pixels by for_each_way().
   void prepare(const raster::Camera& camera, std::span<const glm::mat4> objects);
-  void find_row(PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out) const;
+  std::span<const Reprojection> ways() const { return ways_; }
+  std::span<const uint32_t> way_of_id() const { return way_of_id_; }
 
   // The frame to which find() leads.
   void remember(const raster::Camera& camera, std::span<const glm::mat4> objects);

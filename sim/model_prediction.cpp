@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/kernels/kernels.h"
-#include "sim/row_carrier.h"
 
 namespace pac::sim {
 
@@ -82,59 +81,86 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
     carried_[component] = Image<int16_t, 1>(kept_[component].width(), kept_[component].height());
 }
 
-void ModelPredictor::map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id) {
+// Row y of this frame's maps, and where luma was. By short runs, so that reading depth and ids does not wait for
+// memory.
+void ModelPredictor::find_row(int y, PlaneView<const float> depth, PlaneView<const uint32_t> id, RowCarrier& luma) {
+  constexpr int kRun = 128;
   const WarpKernels& kernels = kernels_for(isa_)->warp;
-  now_[0].set(depth, id, keys_, kernels);
-  now_[1].set_half(now_[0]);
-  for (SurfaceMap& map : now_) map.find_smooth(kernels);
-  const auto next = [](int at, int size) { return at == size - 1 ? size : std::min((at & ~3) + 4, size - 1); };
-  for (int y = 0; y < height_; y = next(y, height_))
-    for (int x = 0; x < width_; x = next(x, width_)) {
-      const uint32_t shown = id.row(y)[x];
-      surface_.row(y)[x] = shown < surfaces_.size() ? surfaces_[shown] : 0;
+  const auto set = [&](int x, int n) { now_[0].set(x, y, n, depth.row(y) + x, id.row(y) + x, keys_, kernels); };
+  luma.begin();
+  if (!has_kept_) return set(0, width_);
+  for_each_way(flow_.ways(), flow_.way_of_id(), id.row(y), width_, [&](int first, int n, const Reprojection* way) {
+    if (way == nullptr) {
+      set(first, n);
+      luma.find_nowhere(first, n);
+      return;
     }
+    const ReprojectionRow row = way->row(y, first);
+    for (int x = first; x < first + n; x += kRun) {
+      const int run = std::min(first + n - x, kRun);
+      set(x, run);
+      luma.find(x, run, row, x - first, depth.row(y) + x, now_[0].row(y) + x);
+    }
+  });
 }
 
-void ModelPredictor::carry(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id) {
-  const Kernels& kernels = *kernels_for(isa_);
-  RowCarrier luma(now_[0], before_[0], false, kernels), chroma(now_[1], before_[1], true, kernels);
-  const auto fetch = [&](RowCarrier& carrier, int component, int y) {
-    int16_t* carried = carried_[component].row(y);
-    carrier.fetch(kept_[component], carried);
-    kernels.warp.add_carried_row(plane(base, component).row(y), carried, static_cast<size_t>(kept_[component].width()),
-                                 plane(reference_, component).row(y));
-  };
-  uint64_t found = 0;
-  for (int y = 0; y < height_; ++y) {
-    flow_.find_row(depth, id, y, luma.flow());
-    luma.find(y, kept_[0].stride());
-    found += luma.found();
-    fetch(luma, 0, y);
-    if (y % 2 != 0) continue;
-    chroma.find_half(y / 2, luma, kept_[1].stride());
-    for (const int component : {1, 2}) fetch(chroma, component, y / 2);
+void ModelPredictor::end_row(int y, PlaneView<const uint32_t> id) {
+  const WarpKernels& kernels = kernels_for(isa_)->warp;
+  now_[0].end_row(y, kernels);
+  if (y % 2 == 0) now_[1].set_half_row(y / 2, now_[0], kernels);
+  if (y % 4 != 0 && y != height_ - 1) return;
+  const uint32_t* ids = id.row(y);
+  uint32_t* to = surface_.row(y);
+  const auto set = [&](int x) { to[x] = ids[x] < surfaces_.size() ? surfaces_[ids[x]] : 0; };
+  for (int x = 0; x < width_; x += 4) set(x);
+  set(width_ - 1);
+}
+
+// Row y of luma and, where it is even, what of chroma belongs to it.
+void ModelPredictor::carry_row(int y, RowCarrier& luma, RowCarrier& chroma) {
+  if (has_kept_)
+    luma.fetch_luma(kept_[0], carried_[0].row(y));
+  else
+    std::fill_n(carried_[0].row(y), width_, int16_t{0});
+  if (y % 2 != 0) return;
+  int16_t *cb = carried_[1].row(y / 2), *cr = carried_[2].row(y / 2);
+  if (has_kept_) {
+    chroma.find_half(luma);
+    chroma.fetch_chroma(kept_[1], kept_[2], cb, cr);
+  } else {
+    std::fill_n(cb, kept_[1].width(), int16_t{0});
+    std::fill_n(cr, kept_[2].width(), int16_t{0});
   }
-  stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width_) * height_);
+}
+
+// The reference's row: base + carried difference.
+void ModelPredictor::add_row(int component, int y, const Frame420& base) {
+  kernels_for(isa_)->warp.add_carried_row(plane(base, component).row(y), carried_[component].row(y),
+                                          static_cast<size_t>(kept_[component].width()),
+                                          plane(reference_, component).row(y));
 }
 
 const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const float> depth,
                                           PlaneView<const uint32_t> id, const raster::Camera& camera,
                                           std::span<const glm::mat4> objects) {
   PAC_ASSERT(base.width() == width_ && base.height() == height_);
-  map_surfaces(depth, id);
-  stats_ = {};
-  if (has_kept_) {
-    flow_.prepare(camera, objects);
-    carry(base, depth, id);
-  } else {
-    for (int component = 0; component < 3; ++component) {
-      const PlaneView<const uint8_t> from = plane(base, component);
-      for (int y = 0; y < from.height; ++y) {
-        std::memcpy(plane(reference_, component).row(y), from.row(y), static_cast<size_t>(from.width));
-        std::fill_n(carried_[component].row(y), from.width, int16_t{0});
-      }
-    }
+  const Kernels& kernels = *kernels_for(isa_);
+  RowCarrier luma(before_[0], kernels), chroma(before_[1], kernels);
+  if (has_kept_) flow_.prepare(camera, objects);
+  uint64_t found = 0;
+  // Row by row, so that depth, ids and what comes of them stay in the cache.
+  for (int y = 0; y < height_; ++y) {
+    find_row(y, depth, id, luma);
+    end_row(y, id);
+    carry_row(y, luma, chroma);
+    found += luma.found();
+    add_row(0, y, base);
+    if (y % 2 != 0) continue;
+    add_row(1, y / 2, base);
+    add_row(2, y / 2, base);
   }
+  for (SurfaceMap& map : now_) map.finish(kernels.warp);
+  stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width_) * height_);
   flow_.remember(camera, objects);
   return reference_;
 }

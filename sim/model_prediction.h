@@ -18,6 +18,7 @@
 #include "raster/scene.h"
 #include "sim/bordered_plane.h"
 #include "sim/model_flow.h"
+#include "sim/row_carrier.h"
 #include "sim/surface_map.h"
 
 namespace pac::sim {
@@ -62,8 +63,10 @@ class ModelPredictor {
   const PredictionStats& stats() const { return stats_; }
 
  private:
-  void map_surfaces(PlaneView<const float> depth, PlaneView<const uint32_t> id);
-  void carry(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id);
+  void find_row(int y, PlaneView<const float> depth, PlaneView<const uint32_t> id, RowCarrier& luma);
+  void end_row(int y, PlaneView<const uint32_t> id);
+  void carry_row(int y, RowCarrier& luma, RowCarrier& chroma);
+  void add_row(int component, int y, const Frame420& base);
 
   int width_, height_;
   std::vector<uint32_t> surfaces_, keys_;  // by id; keys_: empty where nothing moves

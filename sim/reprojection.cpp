@@ -146,37 +146,21 @@ void reproject(const Reprojection& reprojection, PlaneView<const float> depth, F
 void reproject(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, PlaneView<const float> depth,
                PlaneView<const uint32_t> id, Flow& flow, Isa isa) {
   make_flow(depth.width, depth.height, flow);
-  for (int y = 0; y < depth.height; ++y)
-    reproject_row(ways, way_of_id, depth, id, y, {flow.x_64.row(y), flow.y_64.row(y), flow.u_before.row(y)}, isa);
-}
-
-void reproject_row(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id,
-                   PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out, Isa isa) {
   const Kernels* table = kernels_for(isa);
-  PAC_ASSERT(table != nullptr && !ways.empty());
-  if (ways.size() == 1 && way_of_id.empty()) {
-    table->warp.reproject_row(ways[0].row(y), depth.row(y), static_cast<size_t>(depth.width), out.x_64, out.y_64,
-                              out.u_before);
-    return;
-  }
-  const uint32_t* ids = id.row(y);
-  const auto way_at = [&](int x) { return ids[x] < way_of_id.size() ? way_of_id[ids[x]] : 0; };
-  for (int first = 0; first < depth.width;) {
-    const uint32_t way = way_at(first);
-    int end = first + 1;
-    while (end < depth.width && way_at(end) == way) ++end;
-    const auto n = static_cast<size_t>(end - first);
-    int32_t *x_64 = out.x_64 + first, *y_64 = out.y_64 + first;
-    float* u_before = out.u_before + first;
-    if (way == kNoWay) {
+  PAC_ASSERT(table != nullptr);
+  for (int y = 0; y < depth.height; ++y)
+    for_each_way(ways, way_of_id, id.row(y), depth.width, [&](int first, int n, const Reprojection* way) {
+      int32_t *x_64 = flow.x_64.row(y) + first, *y_64 = flow.y_64.row(y) + first;
+      float* u_before = flow.u_before.row(y) + first;
+      if (way != nullptr) {
+        table->warp.reproject_row(way->row(y, first), depth.row(y) + first, static_cast<size_t>(n), x_64, y_64,
+                                  u_before);
+        return;
+      }
       std::fill_n(x_64, n, kWarpNowhere);
       std::fill_n(y_64, n, kWarpNowhere);
       std::fill_n(u_before, n, 0.0f);
-    } else {
-      table->warp.reproject_row(ways[way].row(y, first), depth.row(y) + first, n, x_64, y_64, u_before);
-    }
-    first = end;
-  }
+    });
 }
 
 }  // namespace pac::sim

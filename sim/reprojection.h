@@ -18,12 +18,6 @@ struct Flow {
   DepthImage u_before;
 };
 
-// One row of it.
-struct FlowRow {
-  int32_t *x_64, *y_64;
-  float* u_before;
-};
-
 // An object's vertices as a camera sees them; `world_from_object` is affine.
 struct MovedView {
   const raster::Camera& camera;
@@ -56,9 +50,21 @@ void reproject(const Reprojection& reprojection, PlaneView<const float> depth, F
 constexpr uint32_t kNoWay = UINT32_MAX;
 void reproject(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, PlaneView<const float> depth,
                PlaneView<const uint32_t> id, Flow& flow, Isa isa = best_isa());
-// Row y of it.
-void reproject_row(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id,
-                   PlaneView<const float> depth, PlaneView<const uint32_t> id, int y, const FlowRow& out,
-                   Isa isa = best_isa());
+
+// A row's runs of pixels that go one way: use(first, n, way), nullptr: nowhere. An empty way_of_id: all go ways[0].
+template <class Use>
+void for_each_way(std::span<const Reprojection> ways, std::span<const uint32_t> way_of_id, const uint32_t* ids,
+                  int width, const Use& use) {
+  PAC_ASSERT(!ways.empty());
+  if (way_of_id.empty()) return use(0, width, ways.data());
+  const auto way_at = [&](int x) { return ids[x] < way_of_id.size() ? way_of_id[ids[x]] : 0; };
+  for (int first = 0; first < width;) {
+    const uint32_t way = way_at(first);
+    int end = first + 1;
+    while (end < width && way_at(end) == way) ++end;
+    use(first, end - first, way == kNoWay ? nullptr : &ways[way]);
+    first = end;
+  }
+}
 
 }  // namespace pac::sim

@@ -2,7 +2,6 @@
 // them the filter of the reprojection meets nothing else.
 #pragma once
 
-#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -11,10 +10,7 @@
 
 namespace pac::sim {
 
-inline bool same_surface(uint32_t key, uint32_t wanted) {
-  return std::abs(static_cast<int32_t>((key & kKeyBits) - (wanted & kKeyBits))) <= kKeyTolerance;
-}
-
+// Filled row by row, from the top.
 class SurfaceMap {
  public:
   static constexpr int kBorder = 5;  // nothing is shown there
@@ -26,24 +22,30 @@ class SurfaceMap {
   int height() const { return keys_.height() - 2 * kBorder; }
   const uint32_t* row(int y) const { return keys_.row(y + kBorder) + kBorder; }
 
-  // The keys of a frame, `surfaces` by id, or empty: 1 for all ids but 0. None is smooth yet.
-  void set(PlaneView<const float> depth, PlaneView<const uint32_t> id, std::span<const uint32_t> surfaces,
+  // The keys of n samples of a frame from (x, y) on, `surfaces` by id, or empty: 1 for all ids but 0. None is smooth
+  // before finish(). Then, when all of the row are set, end_row().
+  void set(int x, int y, int n, const float* depth, const uint32_t* id, std::span<const uint32_t> surfaces,
            const WarpKernels& kernels);
-  // Every second key of every second row; (width + 1) / 2 and (height + 1) / 2 of them.
-  void set_half(const SurfaceMap& full);
-
-  // Marks keys as smooth: before other frames look things up.
-  void find_smooth(const WarpKernels& kernels);
+  void end_row(int y, const WarpKernels& kernels);
+  // Every second key of row 2 y, of (width + 1) / 2.
+  void set_half_row(int y, const SurfaceMap& full, const WarpKernels& kernels);
+  // After the last row, before other frames look things up.
+  void finish(const WarpKernels& kernels);
 
   KeyMap view() const { return {row(0), keys_.stride(), width(), height()}; }
 
  private:
+  // Rows of bits, a word of zeros on both sides: the last kRows of them, by number of the row.
+  static constexpr int kRows = 8;
+  using BitRow = std::vector<uint64_t>;
+
   uint32_t* written_row(int y) { return keys_.row(y + kBorder) + kBorder; }
+  void mark_smooth(int y, const WarpKernels& kernels);
+  void clear(int y);
 
-  static constexpr int kRows = 5;  // where the taps of a point and of its next ones meet other surfaces: pairs of them
-
-  IdImage keys_;     // with a border of 0
-  GrayImage mixed_;  // the last kRows rows of WarpKernels::mark_mixed(), two columns from the left; and one of 0
+  IdImage keys_;                         // with a border of 0
+  BitRow right_[kRows], above_[kRows];   // keys that do not belong to the next one's, to the one's above
+  BitRow mixed_, mixed_above_, spread_;  // of mark_smooth()
 };
 
 }  // namespace pac::sim

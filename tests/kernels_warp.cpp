@@ -1,6 +1,7 @@
 // Every instruction set's reprojection equals the scalar one, bit for bit.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -98,45 +99,74 @@ uint32_t some_key(uint32_t& state, bool with_smooth) {
   return with_smooth && next_random(state) % 3 != 0 ? key | kKeySmooth : key;
 }
 
-TEST_CASE("places in the frame before are equal on every instruction set, inside, outside and nowhere") {
+// A map of some keys with the border that maps have.
+struct SomeMap {
+  std::vector<uint32_t> keys = std::vector<uint32_t>(kMapStride * kMapRows);
+
+  explicit SomeMap(uint32_t& state) {
+    for (int y = 0; y < kMapRows - 2 * kMapBorder; ++y)
+      for (int x = 0; x < kMapStride - 2 * kMapBorder; ++x)
+        keys[static_cast<size_t>((y + kMapBorder) * kMapStride + x + kMapBorder)] = some_key(state, true);
+  }
+  KeyMap view() const {
+    return {keys.data() + kMapBorder * kMapStride + kMapBorder, kMapStride,
+            static_cast<int>(kMapStride) - 2 * kMapBorder, kMapRows - 2 * kMapBorder};
+  }
+};
+
+// Arrays of exactly n places, one more that nobody may write.
+struct SomePlaces {
+  std::vector<int32_t> x, y;
+  std::vector<uint8_t> states;
+  std::vector<uint32_t> wanted;
+
+  explicit SomePlaces(size_t n) : x(n + 1, 77), y(n + 1, 77), states(n + 1, 77), wanted(n + 1, 77) {}
+  WarpPlaces view() { return {x.data(), y.data(), states.data(), wanted.data()}; }
+  bool operator==(const SomePlaces&) const = default;
+};
+
+TEST_CASE("points in the frame before are equal on every instruction set, inside, outside and nowhere") {
   const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
   uint32_t state = 13;
+  size_t plain = 0, edges = 0;
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
-    for (int round = 0; round < 200; ++round) {
-      std::vector<uint32_t> keys(kMapStride * kMapRows);
-      const int width = kMapStride - 2 * kMapBorder, height = kMapRows - 2 * kMapBorder;
-      for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-          keys[static_cast<size_t>((y + kMapBorder) * kMapStride + x + kMapBorder)] = some_key(state, true);
-      const KeyMap map{keys.data() + kMapBorder * kMapStride + kMapBorder, kMapStride, width, height};
-      const auto n = static_cast<size_t>(round % 37);
-      std::vector<int32_t> x(n), y(n);
-      std::vector<float> u(n);
+    for (int round = 0; round < 400; ++round) {
+      const SomeMap map(state);
+      const size_t n = static_cast<size_t>(round % 101), first = static_cast<size_t>(round % 3) * 9;
+      // Around the identity: near the row, and beyond the sides of the map.
+      ReprojectionRow row = {{between(state, -9, 9), between(state, -3, 25), between(state, -0.1f, 0.1f), 1.0f},
+                             {between(state, 0.2f, 1.2f), between(state, -0.2f, 0.2f), 0.0f, 0.0f},
+                             {between(state, -4, 4), between(state, -4, 4), between(state, 0.9f, 1.1f), 0.0f}};
+      if (round % 16 == 7) row.origin[3] = -1.0f;
+      std::vector<float> depth(n);
       std::vector<uint32_t> now(n);
       for (size_t i = 0; i < n; ++i) {
-        x[i] = static_cast<int32_t>(next_random(state) % (kMapStride * 64)) - 320;
-        y[i] = static_cast<int32_t>(next_random(state) % (kMapRows * 64)) - 320;
-        if (next_random(state) % 16 == 0) x[i] = y[i] = round % 2 == 0 ? kWarpNowhere : 1 << 24;
-        const float depths[] = {0.5f, 0.53f, 0.0f, -0.0f, -3.0f, 1e30f, 2e-20f, between(state, 0, 1)};
-        u[i] = depths[next_random(state) % 8];
-        now[i] = some_key(state, true);
+        const float depths[] = {0.5f, 0.47f, 1.0f, 0.0f, between(state, 0, 1)};
+        depth[i] = depths[next_random(state) % 5];
+        now[i] = round % 5 == 0 && i % 64 < 40 ? 0 : some_key(state, true);
       }
-      std::vector<uint8_t> states[2];
-      std::vector<uint32_t> wanted[2];
-      size_t special[2];
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
+      SomePlaces full[2] = {SomePlaces(n), SomePlaces(n)}, half[2] = {SomePlaces(n / 2), SomePlaces(n / 2)};
       for (int side = 0; side < 2; ++side) {
-        wanted[side].assign(n + 1, 77);
-        states[side].assign(n + 1, 77);
-        special[side] = tables[side]->place_points(map, x.data(), y.data(), u.data(), now.data(), n,
-                                                   {states[side].data(), wanted[side].data()});
+        const WarpCounts found =
+            tables[side]->find_points(row, first, depth.data(), now.data(), map.view(), n, full[side].view());
+        const WarpCounts halves =
+            tables[side]->find_half_points(full[side].view(), map.view(), n / 2, half[side].view());
+        REQUIRE(found.plain == static_cast<size_t>(std::ranges::count(full[side].states, kWarpPlain)));
+        REQUIRE(found.edges == static_cast<size_t>(std::ranges::count(full[side].states, kWarpEdge)));
+        REQUIRE(halves.plain == static_cast<size_t>(std::ranges::count(half[side].states, kWarpPlain)));
+        REQUIRE(halves.edges == static_cast<size_t>(std::ranges::count(half[side].states, kWarpEdge)));
+        plain += found.plain;
+        edges += found.edges;
       }
-      REQUIRE(special[0] == special[1]);
-      REQUIRE(wanted[0] == wanted[1]);
-      REQUIRE(states[0] == states[1]);
+      REQUIRE(full[0] == full[1]);
+      REQUIRE(half[0] == half[1]);
     }
   }
+  if (kernels_for(Isa::avx2) == nullptr) return;
+  CHECK(plain > 500);
+  CHECK(edges > 500);
 }
 
 TEST_CASE("keys of surfaces and depths are equal on every instruction set, for ids beyond the table, too") {
@@ -164,35 +194,48 @@ TEST_CASE("keys of surfaces and depths are equal on every instruction set, for i
 }
 
 TEST_CASE("points near edges are equal on every instruction set, at depths within and just beyond the tolerance") {
-  constexpr ptrdiff_t kStride = 40;
-  constexpr int kRows = 12;
+  constexpr ptrdiff_t kStride = 56;
   const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
   uint32_t state = 19;
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
     for (int round = 0; round < 200; ++round) {
-      std::vector<int16_t> plane(kStride * kRows);
-      for (int16_t& sample : plane) sample = static_cast<int16_t>(static_cast<int>(next_random(state) % 16384) - 8192);
-      std::vector<uint32_t> keys(kMapStride * kRows);
-      for (uint32_t& key : keys) key = some_key(state, true);
-      std::vector<WarpEdge> edges(static_cast<size_t>(round % 9));
-      for (WarpEdge& edge : edges) {
-        const int x = static_cast<int>(next_random(state) % 20), y = static_cast<int>(next_random(state) % 6);
-        edge = {static_cast<int32_t>(y * kStride + x),
-                static_cast<int32_t>(y * kMapStride + x),
-                some_key(state, false),
-                static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255),
-                static_cast<uint8_t>(next_random(state) % kWarpPhases),
-                static_cast<uint8_t>(next_random(state) % kWarpPhases)};
+      std::vector<int16_t> planes[2];
+      for (std::vector<int16_t>& plane : planes) {
+        plane.resize(kStride * (kMapRows + 8));
+        for (int16_t& sample : plane) {
+          const int value = static_cast<int>(next_random(state) % 16384) - 8192;
+          sample = static_cast<int16_t>(round % 3 == 0 ? (value < 0 ? -8192 : 8191) : value);
+        }
       }
-      std::vector<int16_t> out[2];
+      const SomeMap map(state);
+      const KeyMap view = map.view();
+      const auto n = static_cast<size_t>(round % 23 + (round % 20 == 19 ? 500 : 0));
+      SomePlaces places(n);
+      for (size_t i = 0; i < n; ++i) {
+        places.x[i] = static_cast<int32_t>(next_random(state) % static_cast<uint32_t>(view.width * 64)) - 32;
+        places.y[i] = static_cast<int32_t>(next_random(state) % static_cast<uint32_t>(view.height * 64)) - 32;
+        if (i % 5 == 0) places.x[i] &= ~63;
+        places.states[i] = static_cast<uint8_t>(next_random(state) % 3);
+        places.wanted[i] = some_key(state, false) | 1;
+        if (places.states[i] == kWarpAbsent) places.x[i] = places.y[i] = kWarpNowhere;
+      }
+      std::vector<int16_t> out[2], means[2][2];
+      size_t lost[2][2];
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
       for (int side = 0; side < 2; ++side) {
-        out[side].assign(edges.size() + 1, 999);
-        tables[side]->filter_edge_points(plane.data(), kStride, keys.data(), kMapStride, sim::kWarpFilter.data(),
-                                         edges.data(), edges.size(), out[side].data());
+        out[side].assign(n + 1, 999);
+        for (std::vector<int16_t>& mean : means[side]) mean.assign(n + 1, 999);
+        const int16_t* const samples[2] = {planes[0].data() + 8 * kStride + 8, planes[1].data() + 8 * kStride + 8};
+        int16_t* const to[2] = {means[side][0].data(), means[side][1].data()};
+        lost[side][0] = tables[side]->filter_edges(samples[0], kStride, view, sim::kWarpFilter.data(), places.view(), n,
+                                                   out[side].data());
+        lost[side][1] = tables[side]->mean_edges(samples, kStride, view, places.view(), n, to);
       }
       REQUIRE(out[0] == out[1]);
+      REQUIRE(lost[0][0] == lost[1][0]);
+      REQUIRE(lost[0][1] == lost[1][1]);
+      for (int k = 0; k < 2; ++k) REQUIRE(means[0][k] == means[1][k]);
     }
   }
 }
@@ -203,25 +246,25 @@ TEST_CASE("where the filter meets one surface only is marked alike on every inst
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
     const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
-    for (size_t n = 1; n < 60; ++n) {
-      std::vector<uint32_t> here(n + 1), below(n + 1);
-      for (size_t i = 0; i <= n; ++i) {
+    for (size_t n = 1; n < 200; ++n) {
+      std::vector<uint32_t> above(n), here(n + 1);
+      for (size_t i = 0; i <= n; ++i)
         here[i] = i % 9 == 0 ? some_key(state, false) : 7u << 16 | (0x3F00u + next_random(state) % 6);
-        below[i] = i % 23 == 0 ? some_key(state, false) : 7u << 16 | (0x3F04u + next_random(state) % 6);
-      }
-      std::vector<uint8_t> mixed[2];
+      for (size_t i = 0; i < n; ++i)
+        above[i] = i % 23 == 0 ? some_key(state, false) : 7u << 16 | (0x3F04u + next_random(state) % 6);
+      const size_t words = (n + 63) / 64;
+      std::vector<uint64_t> right[2], down[2], mixed(words);
+      for (uint64_t& word : mixed) word = n % 7 == 0 ? ~uint64_t{0} : uint64_t{next_random(state)} << (n % 40);
       std::vector<uint32_t> keys[2];
-      std::vector<uint8_t> flags(n + 8);
-      for (uint8_t& flag : flags) flag = next_random(state) % 12 == 0;
-      const uint8_t* const rows[5] = {flags.data() + 1, flags.data() + 3, flags.data(), flags.data() + 4,
-                                      flags.data() + 2};
       for (int side = 0; side < 2; ++side) {
-        mixed[side].assign(n + 1, 77);
-        tables[side]->mark_mixed(here.data(), below.data(), n, mixed[side].data());
+        right[side].assign(words + 1, 77);
+        down[side].assign(words + 1, 77);
+        tables[side]->compare_keys(above.data(), here.data(), n, right[side].data(), down[side].data());
         keys[side].assign(n + 1, 77);
-        tables[side]->mark_smooth(rows, n, keys[side].data());
+        tables[side]->mark_smooth(mixed.data(), n, keys[side].data());
       }
-      REQUIRE(mixed[0] == mixed[1]);
+      REQUIRE(right[0] == right[1]);
+      REQUIRE(down[0] == down[1]);
       REQUIRE(keys[0] == keys[1]);
     }
   }

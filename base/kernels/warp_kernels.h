@@ -36,19 +36,15 @@ struct KeyMap {
   int32_t width, height;
 };
 
-// How pixels are found in the frame before. Arrays of n.
+// Where pixels were in the frame before, and how they are found there. Arrays of n.
 struct WarpPlaces {
+  int32_t *x_64, *y_64;
   uint8_t* state;    // kWarpPlain, kWarpEdge or kWarpAbsent
-  uint32_t* wanted;  // kKeyBits of the key that is looked for
+  uint32_t* wanted;  // kKeyBits of the key that is looked for; 0: of nothing
 };
 constexpr uint8_t kWarpAbsent = 0, kWarpEdge = 1, kWarpPlain = 2;
-
-// A point whose taps show more than its own surface.
-struct WarpEdge {
-  int32_t offset, map_offset;  // of the tap (-2, -2) in the plane and in the map
-  uint32_t wanted;             // kKeyBits of the key that is looked for
-  int16_t stand_in;            // for samples that show something else
-  uint8_t phase_x, phase_y;
+struct WarpCounts {
+  size_t plain, edges;
 };
 
 struct WarpKernels {
@@ -60,25 +56,29 @@ struct WarpKernels {
 
   // keys[i] = surface << 16 | code, where the surface is surfaces[id[i]], 0 beyond the table of n_surfaces >= 1, or
   // without a table (surfaces null) 1 for all ids but 0; and the code the upper 16 bits of u = min(max(1 - depth[i],
-  // 0), 1.9921875) in float, which are below 2^14.
+  // 0), 1.9921875) in float, which are below 2^14. 0 where the surface is (modulo 2^16).
   void (*surface_keys_row)(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces,
                            size_t n, uint32_t* keys);
 
-  // Looks n pixels up in the frame before. Pixel i was at (x_64[i], y_64[i]), in 1/64, with 1 - depth u_before[i] (no
-  // NaN), and shows the surface of now[i]: wanted = that surface and the code of u_before. Absent where the surface is
-  // 0, the background, or the nearest pixel, floor((x_64 + 32) / 64), is outside the map; plain where the key at the
-  // floors of x_64 / 64 and y_64 / 64 is smooth and differs from the wanted one by kKeyTolerance at most; else edge.
-  // Returns how many are not plain.
-  size_t (*place_points)(const KeyMap& before, const int32_t* x_64, const int32_t* y_64, const float* u_before,
-                         const uint32_t* now, size_t n, const WarpPlaces& out);
+  // Looks n pixels up in the frame before: pixel i, which shows the surface of the key now[i], was where reproject_row
+  // puts pixel first + i of that row, at 1 - depth u; wanted = that surface and the code of u. Absent where the nearest
+  // pixel, floor((x_64 + 32) / 64), is outside the map; plain where the key at the floors of x_64 / 64 and y_64 / 64 is
+  // smooth and differs from the wanted one by kKeyTolerance at most; else edge. Of surface 0, the background: absent,
+  // kWarpNowhere, wanted 0. first + n < 2^24.
+  WarpCounts (*find_points)(const ReprojectionRow& row, size_t first, const float* depth, const uint32_t* now,
+                            const KeyMap& before, size_t n, const WarpPlaces& out);
 
-  // mixed[i] = 1 where the keys here[i], here[i + 1] and below them do not all belong together, else 0: neighbors on
-  // one of the square's four sides differ by more than kKeyTolerance (the smooth bit is not set yet). Reads n + 1 keys
-  // of each row.
-  void (*mark_mixed)(const uint32_t* here, const uint32_t* below, size_t n, uint8_t* mixed);
+  // The same for n samples at half the resolution, in a map of it: those that are wanted are full.wanted[2 i], and were
+  // at half of full.x_64[2 i] and full.y_64[2 i], rounded down. Reads 2 n of each.
+  WarpCounts (*find_half_points)(const WarpPlaces& full, const KeyMap& before, size_t n, const WarpPlaces& out);
 
-  // Sets kKeySmooth in keys[i] where nothing in columns i..i + 4 of the five rows is 1. Reads n + 4 of each row.
-  void (*mark_smooth)(const uint8_t* const rows[5], size_t n, uint32_t* keys);
+  // Bit i of right (of word i / 64): here[i] and here[i + 1] do not belong together, they differ by more than
+  // kKeyTolerance (the smooth bit is not set yet); bit i of down: nor do above[i] and here[i]. Bit n - 1 of right and
+  // the last word's bits from n on are 0. Reads n + 1 keys of here.
+  void (*compare_keys)(const uint32_t* above, const uint32_t* here, size_t n, uint64_t* right, uint64_t* down);
+
+  // Sets kKeySmooth in those of n keys whose bits in `mixed` are 0.
+  void (*mark_smooth)(const uint64_t* mixed, size_t n, uint32_t* keys);
 
   // n points of a plane of 16-bit samples in -8192..8191, rows `stride` apart; `plane` is its sample (0, 0). Those
   // whose state is kWarpAbsent are 0. Point i is at (x_64[i], y_64[i]), in 1/64: with the taps of the phases x_64 mod
@@ -90,10 +90,17 @@ struct WarpKernels {
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
                         const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out);
 
-  // As filter_points where some taps show something else: samples whose keys in the map (rows are map_stride apart)
-  // differ from the wanted one by more than kKeyTolerance count as stand_in. Reads 8 keys of each of the 6 rows, too.
-  void (*filter_edge_points)(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
-                             const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out);
+  // Points whose state is kWarpEdge, found in `map` and in a plane as for filter_points: samples whose keys differ from
+  // the wanted one by more than kKeyTolerance count as a stand-in. That is the mean of those of the four samples around
+  // the point that do not, with their bilinear weights in 1/64, rounded to nearest, halves away from 0. out[i] = the
+  // filter's result; 0 where all four differ (weigh nothing). Returns the number of these. Other points of out stay as
+  // they are. Reads up to 8 samples and keys of each of the 6 rows.
+  size_t (*filter_edges)(const int16_t* plane, ptrdiff_t stride, const KeyMap& map, const int16_t* taps,
+                         const WarpPlaces& places, size_t n, int16_t* out);
+
+  // The same with the stand-in itself in out[i], for two planes of one stride.
+  size_t (*mean_edges)(const int16_t* const planes[2], ptrdiff_t stride, const KeyMap& map, const WarpPlaces& places,
+                       size_t n, int16_t* const out[2]);
 
   // out[i] = min(max(base[i] + ((carried[i] + 16) >> 5), 0), 255), carried in -32700..32700. Any n and alignment.
   void (*add_carried_row)(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out);
@@ -109,6 +116,7 @@ struct WarpKernels {
 void fill_warp_scalar(WarpKernels& table);
 void fill_warp_sse41(WarpKernels& table);
 void fill_warp_avx2(WarpKernels& table);
+void fill_warp_filters_avx2(WarpKernels& table);
 void fill_warp_neon(WarpKernels& table);
 
 }  // namespace pac

@@ -37,10 +37,11 @@ inline void reproject(const ReprojectionRow& row, float32x4_t column, float32x4_
   vst1q_f32(u_before, vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(before), somewhere)));
 }
 
-void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
-                   float* u_before) {
+// Columns from `start` on.
+inline void reproject_columns(const ReprojectionRow& row, size_t start, const float* depth, size_t n, int32_t* x_64,
+                              int32_t* y_64, float* u_before) {
   const float first[4] = {0, 1, 2, 3};
-  float32x4_t column = vld1q_f32(first);
+  float32x4_t column = vaddq_f32(vdupq_n_f32(static_cast<float>(static_cast<int32_t>(start))), vld1q_f32(first));
   size_t i = 0;
   for (; i + 4 <= n; i += 4) {
     reproject(row, column, vld1q_f32(depth + i), x_64 + i, y_64 + i, u_before + i);
@@ -54,6 +55,11 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
   __builtin_memcpy(x_64 + i, last_x, (n - i) * sizeof(int32_t));
   __builtin_memcpy(y_64 + i, last_y, (n - i) * sizeof(int32_t));
   __builtin_memcpy(u_before + i, last_u, (n - i) * sizeof(float));
+}
+
+void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
+                   float* u_before) {
+  reproject_columns(row, 0, depth, n, x_64, y_64, u_before);
 }
 
 // ---- Filter ----
@@ -92,20 +98,18 @@ inline uint32x4_t belongs(const uint32_t* keys, uint32x4_t wanted) {
   return vcleq_u32(vaddq_u32(apart, vdupq_n_u32(kKeyTolerance)), vdupq_n_u32(2 * kKeyTolerance));
 }
 
-void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
-                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
-  for (size_t i = 0; i < n; ++i) {
-    const WarpEdge& edge = edges[i];
-    const uint32x4_t wanted = vdupq_n_u32(edge.wanted);
-    const int16x8_t stand_in = vdupq_n_s16(edge.stand_in);
-    const auto row = [&](int k) {
-      const uint32_t* keys = map + edge.map_offset + k * map_stride;
-      const uint16x8_t mask = vcombine_u16(vmovn_u32(belongs(keys, wanted)), vmovn_u32(belongs(keys + 4, wanted)));
-      return vbslq_s16(mask, vld1q_s16(plane + edge.offset + k * stride), stand_in);
-    };
-    out[i] = filter_point(row, taps + kWarpTapStride * edge.phase_x, taps + kWarpTapStride * edge.phase_y);
-  }
+inline int16_t filter_shown(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                            uint32_t wanted_key, int16_t stand_in, const int16_t* taps_x, const int16_t* taps_y) {
+  const uint32x4_t wanted = vdupq_n_u32(wanted_key);
+  const auto row = [&](int k) {
+    const uint32_t* keys = map + k * map_stride;
+    const uint16x8_t mask = vcombine_u16(vmovn_u32(belongs(keys, wanted)), vmovn_u32(belongs(keys + 4, wanted)));
+    return vbslq_s16(mask, vld1q_s16(plane + k * stride), vdupq_n_s16(stand_in));
+  };
+  return filter_point(row, taps_x, taps_y);
 }
+
+#include "base/kernels/warp_points_simd.inc"
 
 // ---- Rows ----
 
@@ -142,8 +146,9 @@ inline void composite_eight(const uint8_t* low, const int16_t* difference, const
 
 void fill_warp_neon(WarpKernels& table) {
   table.reproject_row = reproject_row;
+  table.find_points = find_points;
   table.filter_points = filter_points;
-  table.filter_edge_points = filter_edge_points;
+  table.filter_edges = filter_edges;
   table.add_carried_row = add_carried_row;
   table.composite_signed_row = composite_signed_row;
 }

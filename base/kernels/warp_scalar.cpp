@@ -17,17 +17,28 @@ int32_t in_64ths(float position) {
   return static_cast<int32_t>(std::floor(clamped(position) * 64.0f + 0.5f));
 }
 
+struct Place {
+  int32_t x_64, y_64;
+  float u;
+};
+
+Place reprojected(const ReprojectionRow& row, size_t i, float depth) {
+  const float u = 1.0f - depth, column = static_cast<float>(static_cast<int32_t>(i));
+  float at[4];
+  for (int c = 0; c < 4; ++c) at[c] = (row.origin[c] + column * row.per_pixel[c]) + u * row.per_depth[c];
+  const float x = at[0] / at[3], y = at[1] / at[3], before = at[2] / at[3];
+  const bool somewhere = at[3] > kSmallestW && x == x && y == y && before == before;
+  if (!somewhere) return {kWarpNowhere, kWarpNowhere, 0.0f};
+  return {in_64ths(x), in_64ths(y), before};
+}
+
 void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                    float* u_before) {
   for (size_t i = 0; i < n; ++i) {
-    const float u = 1.0f - depth[i], column = static_cast<float>(static_cast<int32_t>(i));
-    float at[4];
-    for (int c = 0; c < 4; ++c) at[c] = (row.origin[c] + column * row.per_pixel[c]) + u * row.per_depth[c];
-    const float x = at[0] / at[3], y = at[1] / at[3], before = at[2] / at[3];
-    const bool somewhere = at[3] > kSmallestW && x == x && y == y && before == before;
-    x_64[i] = somewhere ? in_64ths(x) : kWarpNowhere;
-    y_64[i] = somewhere ? in_64ths(y) : kWarpNowhere;
-    u_before[i] = somewhere ? before : 0.0f;
+    const Place place = reprojected(row, i, depth[i]);
+    x_64[i] = place.x_64;
+    y_64[i] = place.y_64;
+    u_before[i] = place.u;
   }
 }
 
@@ -38,30 +49,13 @@ uint32_t depth_code(float u) {
 
 void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
                       uint32_t* keys) {
-  for (size_t i = 0; i < n; ++i)
-    keys[i] = (surfaces == nullptr  ? uint32_t{id[i] != 0} << 16
-               : id[i] < n_surfaces ? surfaces[id[i]] << 16
-                                    : 0) |
-              depth_code(1.0f - depth[i]);
-}
-
-size_t place_points(const KeyMap& before, const int32_t* x_64, const int32_t* y_64, const float* u_before,
-                    const uint32_t* now, size_t n, const WarpPlaces& out) {
-  size_t not_plain = 0;
   for (size_t i = 0; i < n; ++i) {
-    const int32_t x = x_64[i] >> 6, y = y_64[i] >> 6;
-    const uint32_t wanted = (now[i] & kKeySurfaceBits) | depth_code(u_before[i]);
-    const int32_t near_x = (x_64[i] + kWarpPhases / 2) >> 6, near_y = (y_64[i] + kWarpPhases / 2) >> 6;
-    const bool is_inside = (now[i] & kKeySurfaceBits) != 0 && near_x >= 0 && near_y >= 0 && near_x < before.width &&
-                           near_y < before.height;
-    const uint32_t key = is_inside ? before.keys[y * before.stride + x] : 0;
-    const auto apart = static_cast<int32_t>((key & kKeyBits) - wanted);
-    const bool is_plain = (key & kKeySmooth) != 0 && apart <= kKeyTolerance && apart >= -kKeyTolerance;
-    out.wanted[i] = wanted;
-    out.state[i] = is_plain ? kWarpPlain : is_inside ? kWarpEdge : kWarpAbsent;
-    if (!is_plain) ++not_plain;
+    const uint32_t surface = (surfaces == nullptr  ? uint32_t{id[i] != 0}
+                              : id[i] < n_surfaces ? surfaces[id[i]]
+                                                   : 0)
+                             << 16;
+    keys[i] = surface == 0 ? 0 : surface | depth_code(1.0f - depth[i]);
   }
-  return not_plain;
 }
 
 bool apart(uint32_t a, uint32_t b) {
@@ -69,19 +63,58 @@ bool apart(uint32_t a, uint32_t b) {
   return a - b + uint32_t{kKeyTolerance} > 2 * uint32_t{kKeyTolerance};
 }
 
-void mark_mixed(const uint32_t* here, const uint32_t* below, size_t n, uint8_t* mixed) {
-  for (size_t i = 0; i < n; ++i)
-    mixed[i] = apart(here[i], here[i + 1]) || apart(here[i], below[i]) || apart(below[i], below[i + 1]) ||
-               apart(here[i + 1], below[i + 1]);
+uint8_t state_of(const KeyMap& before, int32_t x_64, int32_t y_64, uint32_t wanted) {
+  const int32_t near_x = (x_64 + kWarpPhases / 2) >> 6, near_y = (y_64 + kWarpPhases / 2) >> 6;
+  if (wanted == 0 || near_x < 0 || near_y < 0 || near_x >= before.width || near_y >= before.height) return kWarpAbsent;
+  const uint32_t key = before.keys[(y_64 >> 6) * before.stride + (x_64 >> 6)];
+  return (key & kKeySmooth) != 0 && !apart(key & kKeyBits, wanted) ? kWarpPlain : kWarpEdge;
 }
 
-void mark_smooth(const uint8_t* const rows[5], size_t n, uint32_t* keys) {
+void count(uint8_t state, WarpCounts& counts) {
+  counts.plain += state == kWarpPlain;
+  counts.edges += state == kWarpEdge;
+}
+
+WarpCounts find_points(const ReprojectionRow& row, size_t first, const float* depth, const uint32_t* now,
+                       const KeyMap& before, size_t n, const WarpPlaces& out) {
+  WarpCounts counts = {};
   for (size_t i = 0; i < n; ++i) {
-    uint8_t any = 0;
-    for (int row = 0; row < 5; ++row)
-      for (size_t k = 0; k < 5; ++k) any |= rows[row][i + k];
-    if (any == 0) keys[i] |= kKeySmooth;
+    const uint32_t surface = now[i] & kKeySurfaceBits;
+    const Place place = surface == 0 ? Place{kWarpNowhere, kWarpNowhere, 0.0f} : reprojected(row, first + i, depth[i]);
+    out.x_64[i] = place.x_64;
+    out.y_64[i] = place.y_64;
+    out.wanted[i] = surface == 0 ? 0 : surface | depth_code(place.u);
+    out.state[i] = state_of(before, place.x_64, place.y_64, out.wanted[i]);
+    count(out.state[i], counts);
   }
+  return counts;
+}
+
+WarpCounts find_half_points(const WarpPlaces& full, const KeyMap& before, size_t n, const WarpPlaces& out) {
+  WarpCounts counts = {};
+  for (size_t i = 0; i < n; ++i) {
+    out.x_64[i] = full.x_64[2 * i] >> 1;
+    out.y_64[i] = full.y_64[2 * i] >> 1;
+    out.wanted[i] = full.wanted[2 * i];
+    out.state[i] = state_of(before, out.x_64[i], out.y_64[i], out.wanted[i]);
+    count(out.state[i], counts);
+  }
+  return counts;
+}
+
+void compare_keys(const uint32_t* above, const uint32_t* here, size_t n, uint64_t* right, uint64_t* down) {
+  for (size_t word = 0; 64 * word < n; ++word) {
+    right[word] = down[word] = 0;
+    for (size_t i = 64 * word; i < n && i < 64 * word + 64; ++i) {
+      right[word] |= uint64_t{i + 1 < n && apart(here[i], here[i + 1])} << i % 64;
+      down[word] |= uint64_t{apart(above[i], here[i])} << i % 64;
+    }
+  }
+}
+
+void mark_smooth(const uint64_t* mixed, size_t n, uint32_t* keys) {
+  for (size_t i = 0; i < n; ++i)
+    if ((mixed[i / 64] >> i % 64 & 1) == 0) keys[i] |= kKeySmooth;
 }
 
 int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x, const int16_t* taps_y) {
@@ -105,21 +138,80 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
   }
 }
 
-void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
-                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
+// A point between surfaces: which of the four samples around it show its own, with their bilinear weights.
+struct Edge {
+  ptrdiff_t offset;  // of the first of them in a plane
+  const uint32_t* keys;
+  uint32_t wanted;
+  int32_t right, below;
+  int32_t weight[4], sum;
+};
+
+bool is_shown(const Edge& edge, uint32_t key) {
+  return !apart(key & kKeyBits, edge.wanted);
+}
+
+Edge edge_at(ptrdiff_t stride, const KeyMap& map, const WarpPlaces& places, size_t i) {
+  const int32_t x = places.x_64[i] >> 6, y = places.y_64[i] >> 6;
+  Edge edge = {y * stride + x,
+               map.keys + y * map.stride + x,
+               places.wanted[i],
+               places.x_64[i] & (kWarpPhases - 1),
+               places.y_64[i] & (kWarpPhases - 1),
+               {},
+               0};
+  for (int k = 0; k < 4; ++k) {
+    const int32_t across = k % 2 == 0 ? kWarpPhases - edge.right : edge.right;
+    const int32_t down = k / 2 == 0 ? kWarpPhases - edge.below : edge.below;
+    edge.weight[k] = is_shown(edge, edge.keys[k / 2 * map.stride + k % 2]) ? across * down : 0;
+    edge.sum += edge.weight[k];
+  }
+  return edge;
+}
+
+int16_t mean(const int16_t* plane, ptrdiff_t stride, const Edge& edge) {
+  int32_t sum = 0;
+  for (int k = 0; k < 4; ++k) sum += edge.weight[k] * plane[edge.offset + k / 2 * stride + k % 2];
+  const int32_t half = edge.sum / 2;
+  return static_cast<int16_t>(sum >= 0 ? (sum + half) / edge.sum : -((half - sum) / edge.sum));
+}
+
+size_t filter_edges(const int16_t* plane, ptrdiff_t stride, const KeyMap& map, const int16_t* taps,
+                    const WarpPlaces& places, size_t n, int16_t* out) {
+  size_t lost = 0;
   for (size_t i = 0; i < n; ++i) {
-    const WarpEdge& edge = edges[i];
+    if (places.state[i] != kWarpEdge) continue;
+    const Edge edge = edge_at(stride, map, places, i);
+    out[i] = 0;
+    if (edge.sum == 0) {
+      ++lost;
+      continue;
+    }
+    const int16_t stand_in = mean(plane, stride, edge);
     int16_t patch[kWarpTaps * kWarpTapStride];
     for (int k = 0; k < kWarpTaps; ++k)
       for (int j = 0; j < kWarpTaps; ++j) {
-        const uint32_t key = map[edge.map_offset + k * map_stride + j] & kKeyBits;
-        const auto apart = static_cast<int32_t>(key - edge.wanted);
-        patch[k * kWarpTapStride + j] =
-            apart <= kKeyTolerance && apart >= -kKeyTolerance ? plane[edge.offset + k * stride + j] : edge.stand_in;
+        const ptrdiff_t across = j - kWarpTapsBefore, down = k - kWarpTapsBefore;
+        patch[k * kWarpTapStride + j] = is_shown(edge, edge.keys[down * map.stride + across])
+                                            ? plane[edge.offset + down * stride + across]
+                                            : stand_in;
       }
     out[i] =
-        filter_point(patch, kWarpTapStride, taps + kWarpTapStride * edge.phase_x, taps + kWarpTapStride * edge.phase_y);
+        filter_point(patch, kWarpTapStride, taps + kWarpTapStride * edge.right, taps + kWarpTapStride * edge.below);
   }
+  return lost;
+}
+
+size_t mean_edges(const int16_t* const planes[2], ptrdiff_t stride, const KeyMap& map, const WarpPlaces& places,
+                  size_t n, int16_t* const out[2]) {
+  size_t lost = 0;
+  for (size_t i = 0; i < n; ++i) {
+    if (places.state[i] != kWarpEdge) continue;
+    const Edge edge = edge_at(stride, map, places, i);
+    for (int k = 0; k < 2; ++k) out[k][i] = edge.sum == 0 ? 0 : mean(planes[k], stride, edge);
+    lost += edge.sum == 0;
+  }
+  return lost;
 }
 
 uint8_t to_byte(int value) {
@@ -144,12 +236,14 @@ void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u
 
 void fill_warp_scalar(WarpKernels& table) {
   table.reproject_row = reproject_row;
-  table.filter_points = filter_points;
   table.surface_keys_row = surface_keys_row;
-  table.place_points = place_points;
-  table.mark_mixed = mark_mixed;
+  table.find_points = find_points;
+  table.find_half_points = find_half_points;
+  table.compare_keys = compare_keys;
   table.mark_smooth = mark_smooth;
-  table.filter_edge_points = filter_edge_points;
+  table.filter_points = filter_points;
+  table.filter_edges = filter_edges;
+  table.mean_edges = mean_edges;
   table.add_carried_row = add_carried_row;
   table.composite_signed_row = composite_signed_row;
 }

@@ -37,9 +37,10 @@ inline Quad reproject(const ReprojectionRow& row, __m128 column, __m128 depth) {
   return {in_64ths(x, somewhere), in_64ths(y, somewhere), _mm_and_ps(before, somewhere)};
 }
 
-void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
-                   float* u_before) {
-  __m128i column = _mm_setr_epi32(0, 1, 2, 3);
+// Columns from `first` on.
+inline void reproject_columns(const ReprojectionRow& row, size_t first, const float* depth, size_t n, int32_t* x_64,
+                              int32_t* y_64, float* u_before) {
+  __m128i column = _mm_add_epi32(_mm_set1_epi32(static_cast<int>(first)), _mm_setr_epi32(0, 1, 2, 3));
   size_t i = 0;
   for (; i + 4 <= n; i += 4) {
     const Quad quad = reproject(row, _mm_cvtepi32_ps(column), _mm_loadu_ps(depth + i));
@@ -49,11 +50,17 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
     column = _mm_add_epi32(column, _mm_set1_epi32(4));
   }
   for (; i < n; ++i) {
-    const Quad one = reproject(row, _mm_set1_ps(static_cast<float>(static_cast<int32_t>(i))), _mm_set1_ps(depth[i]));
+    const auto at = static_cast<float>(static_cast<int32_t>(first + i));
+    const Quad one = reproject(row, _mm_set1_ps(at), _mm_set1_ps(depth[i]));
     x_64[i] = _mm_cvtsi128_si32(one.x_64);
     y_64[i] = _mm_cvtsi128_si32(one.y_64);
     u_before[i] = _mm_cvtss_f32(one.u_before);
   }
+}
+
+void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
+                   float* u_before) {
+  reproject_columns(row, 0, depth, n, x_64, y_64, u_before);
 }
 
 inline __m128i load(const int16_t* at) {
@@ -114,23 +121,20 @@ inline __m128i belongs(__m128i key, __m128i wanted) {
   return _mm_cmpeq_epi32(_mm_min_epu32(from_low, _mm_set1_epi32(2 * kKeyTolerance)), from_low);
 }
 
-void filter_edge_points(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
-                        const int16_t* taps, const WarpEdge* edges, size_t n, int16_t* out) {
-  for (size_t i = 0; i < n; ++i) {
-    const WarpEdge& edge = edges[i];
-    const __m128i wanted = _mm_set1_epi32(static_cast<int>(edge.wanted)), stand_in = _mm_set1_epi16(edge.stand_in);
-    int16_t patch[kWarpTaps * kWarpTapStride];
-    for (int k = 0; k < kWarpTaps; ++k) {
-      const uint32_t* keys = map + edge.map_offset + k * map_stride;
-      const __m128i mask = _mm_packs_epi32(belongs(load(keys), wanted), belongs(load(keys + 4), wanted));
-      const __m128i samples = load(plane + edge.offset + k * stride);
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(patch + k * kWarpTapStride),
-                       _mm_blendv_epi8(stand_in, samples, mask));
-    }
-    out[i] = sum_of(filter_point(patch, kWarpTapStride, taps + kWarpTapStride * edge.phase_x,
-                                 taps + kWarpTapStride * edge.phase_y));
+inline int16_t filter_shown(const int16_t* plane, ptrdiff_t stride, const uint32_t* map, ptrdiff_t map_stride,
+                            uint32_t wanted_key, int16_t stand_in, const int16_t* taps_x, const int16_t* taps_y) {
+  const __m128i wanted = _mm_set1_epi32(static_cast<int>(wanted_key)), replaced = _mm_set1_epi16(stand_in);
+  int16_t patch[kWarpTaps * kWarpTapStride];
+  for (int k = 0; k < kWarpTaps; ++k) {
+    const uint32_t* keys = map + k * map_stride;
+    const __m128i mask = _mm_packs_epi32(belongs(load(keys), wanted), belongs(load(keys + 4), wanted));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(patch + k * kWarpTapStride),
+                     _mm_blendv_epi8(replaced, load(plane + k * stride), mask));
   }
+  return sum_of(filter_point(patch, kWarpTapStride, taps_x, taps_y));
 }
+
+#include "base/kernels/warp_points_simd.inc"
 
 // Of samples with bits below the point, rounded.
 inline __m128i whole(__m128i carried) {
@@ -192,8 +196,9 @@ inline void composite_eight(const uint8_t* low, const int16_t* difference, const
 
 void fill_warp_sse41(WarpKernels& table) {
   table.reproject_row = reproject_row;
+  table.find_points = find_points;
   table.filter_points = filter_points;
-  table.filter_edge_points = filter_edge_points;
+  table.filter_edges = filter_edges;
   table.add_carried_row = add_carried_row;
   table.composite_signed_row = composite_signed_row;
 }
