@@ -69,44 +69,115 @@ inline __m256i filter_two(const int16_t* plane, ptrdiff_t stride, Taps taps, con
   return _mm256_madd_epi16(v, load_two(taps[x[0]], taps[x[1]]));
 }
 
-// Eight points no more than eight columns from the first one: sixteen columns are filtered down once for each of the
-// heights among them, of which there are a few. False where there are more.
-constexpr int kHeights = 5;
-inline bool filter_down_heights(const int16_t* plane, ptrdiff_t stride, Taps taps, __m256i columns, const int32_t* y,
-                                int16_t v[kHeights][16], int32_t* at) {
-  const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(_mm256_castsi256_si128(columns)));
-  const __m256i near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(8)), from_first);
-  if (_mm256_movemask_epi8(near) != -1) return false;
-  const int16_t* first = plane + _mm_cvtsi128_si32(_mm256_castsi256_si128(columns)) - kWarpTapsBefore;
+// Six rows of sixteen columns, pairs of them interleaved: columns 0..3 and 8..11, 4..7 and 12..15.
+struct Patch {
+  __m256i low[3], high[3];
+};
+
+// False where all of it is 0.
+inline bool load_patch(const int16_t* first, ptrdiff_t stride, Patch& patch) {
+  const __m256i rows[kWarpTaps] = {load_16(first),
+                                   load_16(first + stride),
+                                   load_16(first + 2 * stride),
+                                   load_16(first + 3 * stride),
+                                   load_16(first + 4 * stride),
+                                   load_16(first + 5 * stride)};
+  const __m256i any =
+      _mm256_or_si256(_mm256_or_si256(_mm256_or_si256(rows[0], rows[1]), _mm256_or_si256(rows[2], rows[3])),
+                      _mm256_or_si256(rows[4], rows[5]));
+  if (_mm256_testz_si256(any, any) != 0) return false;
+  for (int k = 0; k < 3; ++k) {
+    patch.low[k] = _mm256_unpacklo_epi16(rows[2 * k], rows[2 * k + 1]);
+    patch.high[k] = _mm256_unpackhi_epi16(rows[2 * k], rows[2 * k + 1]);
+  }
+  return true;
+}
+
+// Two coefficients in all lanes.
+inline __m256i pair_of(const int16_t* taps, int k) {
+  int32_t pair;
+  __builtin_memcpy(&pair, taps + 2 * k, sizeof pair);
+  return _mm256_set1_epi32(pair);
+}
+
+// v of sixteen columns.
+inline __m256i filter_down(const Patch& patch, const int16_t* taps) {
+  const __m256i t0 = pair_of(taps, 0), t1 = pair_of(taps, 1), t2 = pair_of(taps, 2), half = _mm256_set1_epi32(128);
+  const auto sum = [&](const __m256i pairs[3]) {
+    const __m256i a = _mm256_add_epi32(_mm256_madd_epi16(pairs[0], t0), _mm256_madd_epi16(pairs[1], t1));
+    return _mm256_srai_epi32(_mm256_add_epi32(a, _mm256_add_epi32(_mm256_madd_epi16(pairs[2], t2), half)), 8);
+  };
+  return _mm256_packs_epi32(sum(patch.low), sum(patch.high));
+}
+
+// Eight points of up to kHeights heights: sixteen columns are filtered down once for each. False where there are more.
+constexpr int kHeights = 4;
+inline bool filter_heights(const Patch& patch, Taps taps, __m256i from_first, const int32_t* x, const int32_t* y,
+                           __m256i sums[4]) {
+  alignas(32) int16_t v[kHeights][16];
+  alignas(32) int32_t at[8];
   const __m256i heights = load(y);
   __m256i places = from_first;
   unsigned left = 0xFF;
-  for (int i = 0; i < kHeights; ++i) {
+  for (int i = 0; left != 0; ++i) {
+    if (i == kHeights) return false;
     const int32_t height = y[__builtin_ctz(left)];
     const __m256i same = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(height));
-    const int16_t* rows = first + ((height >> 6) - kWarpTapsBefore) * stride;
-    const __m256i ty = _mm256_broadcastsi128_si256(load(taps[height]));
-    store(v[i], filter_down([&](int k) { return load_16(rows + k * stride); }, ty));
+    store(v[i], filter_down(patch, taps[height]));
     places = _mm256_add_epi32(places, _mm256_and_si256(same, _mm256_set1_epi32(16 * i)));
     left &= ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
-    if (left != 0) continue;
-    store(at, places);
-    return true;
   }
-  return false;
+  store(at, places);
+  for (int i = 0; i < 4; ++i)
+    sums[i] = _mm256_madd_epi16(load_two(v[0] + at[2 * i], v[0] + at[2 * i + 1]),
+                                load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
+  return true;
+}
+
+// Eight points of any heights: each is filtered down by itself.
+inline __m128i filter_each(const Patch& patch, Taps taps, __m256i from_first, const int32_t* x, const int32_t* y) {
+  alignas(32) int32_t pairs[3][16];
+  alignas(32) int32_t at[8];
+  store(at, from_first);
+  for (int k = 0; k < 3; ++k) {
+    store(pairs[k], _mm256_permute2x128_si256(patch.low[k], patch.high[k], 0x20));
+    store(pairs[k] + 8, _mm256_permute2x128_si256(patch.low[k], patch.high[k], 0x31));
+  }
+  const auto down = [&](int i) {
+    const int16_t* ty = taps[y[i]];
+    __m256i sum = _mm256_set1_epi32(128);
+    for (int k = 0; k < 3; ++k) sum = _mm256_add_epi32(sum, _mm256_madd_epi16(load(pairs[k] + at[i]), pair_of(ty, k)));
+    return _mm256_srai_epi32(sum, 8);
+  };
+  // Two points: the lower halves of their sums' registers, then the upper ones.
+  const auto two = [&](int i) {
+    const __m128i a = load(taps[x[i]]), b = load(taps[x[i + 1]]);
+    const __m256i tx = _mm256_set_m128i(_mm_unpackhi_epi64(a, b), _mm_unpacklo_epi64(a, b));
+    const __m256i sums = _mm256_madd_epi16(_mm256_packs_epi32(down(i), down(i + 1)), tx);
+    return _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
+  };
+  const __m128i half = _mm_set1_epi32(512);
+  const __m128i low = _mm_add_epi32(_mm_hadd_epi32(two(0), two(2)), half);
+  const __m128i high = _mm_add_epi32(_mm_hadd_epi32(two(4), two(6)), half);
+  return _mm_packs_epi32(_mm_srai_epi32(low, 10), _mm_srai_epi32(high, 10));
 }
 
 inline __m128i filter_eight(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y) {
-  alignas(32) int16_t v[kHeights][16];
-  alignas(32) int32_t at[8];
+  const __m256i columns = _mm256_srai_epi32(load(x), 6), lines = _mm256_srai_epi32(load(y), 6);
+  const __m128i column = _mm256_castsi256_si128(columns), line = _mm256_castsi256_si128(lines);
+  const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(column));
+  const __m256i is_near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(8)), from_first);
+  const __m256i in_line = _mm256_cmpeq_epi32(lines, _mm256_broadcastd_epi32(line));
   __m256i sums[4];
-  if (filter_down_heights(plane, stride, taps, _mm256_srai_epi32(load(x), 6), y, v, at)) {
-    for (int i = 0; i < 4; ++i)
-      sums[i] = _mm256_madd_epi16(load_two(v[0] + at[2 * i], v[0] + at[2 * i + 1]),
-                                  load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
-  } else {
+  if (_mm256_movemask_epi8(_mm256_and_si256(is_near, in_line)) != -1) {
     for (int i = 0; i < 4; ++i) sums[i] = filter_two(plane, stride, taps, x + 2 * i, y + 2 * i);
+    return finish_eight(sums);
   }
+  const ptrdiff_t row = _mm_cvtsi128_si32(line) - kWarpTapsBefore;
+  Patch patch;
+  if (!load_patch(plane + row * stride + _mm_cvtsi128_si32(column) - kWarpTapsBefore, stride, patch))
+    return _mm_setzero_si128();
+  if (!filter_heights(patch, taps, from_first, x, y, sums)) return filter_each(patch, taps, from_first, x, y);
   return finish_eight(sums);
 }
 
