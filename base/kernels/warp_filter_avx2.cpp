@@ -114,7 +114,7 @@ inline __m256i filter_down(const Patch& patch, const int16_t* taps) {
 constexpr int kHeights = 4;
 inline bool filter_heights(const Patch& patch, Taps taps, __m256i from_first, const int32_t* x, const int32_t* y,
                            __m256i sums[4]) {
-  alignas(32) int16_t v[kHeights][16];
+  alignas(32) int16_t v[16 * kHeights];
   alignas(32) int32_t at[8];
   const __m256i heights = load(y);
   __m256i places = from_first;
@@ -123,14 +123,14 @@ inline bool filter_heights(const Patch& patch, Taps taps, __m256i from_first, co
     if (i == kHeights) return false;
     const int32_t height = y[__builtin_ctz(left)];
     const __m256i same = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(height));
-    store(v[i], filter_down(patch, taps[height]));
+    store(v + 16 * i, filter_down(patch, taps[height]));
     places = _mm256_add_epi32(places, _mm256_and_si256(same, _mm256_set1_epi32(16 * i)));
     left &= ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
   }
   store(at, places);
   for (int i = 0; i < 4; ++i)
-    sums[i] = _mm256_madd_epi16(load_two(v[0] + at[2 * i], v[0] + at[2 * i + 1]),
-                                load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
+    sums[i] =
+        _mm256_madd_epi16(load_two(v + at[2 * i], v + at[2 * i + 1]), load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
   return true;
 }
 
