@@ -163,8 +163,8 @@ class Walk {
       if (coder_.failed()) return false;
     }
     resize(n_corners_);
-    for (uint32_t& twin : topology_.twin)
-      if (twin == kOpen) twin = kNone;
+    static_assert(kOpen + 1 == kNone);
+    for (uint32_t& twin : topology_.twin) twin += twin == kOpen ? 1 : 0;
     if (topology_.all_triangles) number_triangles();
     return topology_.n_vertices == header_.n_vertices && n_corners_ == header_.n_corners;
   }
@@ -183,13 +183,8 @@ class Walk {
     resize(static_cast<uint32_t>(std::min<uint64_t>(header_.n_corners, uint64_t{2} * n_corners)));
   }
   void number_triangles() {
-    topology_.corner_face.resize(n_corners_);
     topology_.face_first.resize(size_t{n_faces_} + 1);
-    uint32_t* corner_face = topology_.corner_face.data();
-    for (uint32_t face = 0; face < n_faces_; ++face) {
-      std::fill_n(corner_face + 3 * size_t{face}, 3, face);
-      topology_.face_first[face + 1] = 3 * face + 3;
-    }
+    for (uint32_t face = 0; face < n_faces_; ++face) topology_.face_first[face + 1] = 3 * face + 3;
   }
   static uint32_t clamped(uint32_t value, uint32_t limit) { return value < limit ? value : limit; }
   uint32_t start_of(uint32_t corner) const { return topology_.corner_vertex[corner]; }
@@ -202,7 +197,7 @@ class Walk {
   bool code_gate(uint32_t gate);
   bool code_table_corner(uint32_t k, uint32_t place);
   Step find_step(std::array<uint32_t, kOld>& candidate, uint32_t wanted);
-  bool add_corner(Step step, std::array<uint32_t, kOld>& candidate, uint32_t mesh_vertex);
+  uint32_t find_corner(Step step, std::array<uint32_t, kOld>& candidate, uint32_t mesh_vertex);
   uint32_t code_plain_number(uint32_t number);
   uint32_t code_size(uint32_t context);
   uint32_t code_size_across(uint32_t gate_size);
@@ -212,6 +207,8 @@ class Walk {
   Step code_far_step(AdaptiveBit* one, AdaptiveBit* two, std::array<uint32_t, kOld>& candidate, uint32_t wanted);
   uint32_t code_old_vertex(uint32_t wanted);
   void finish_face(uint32_t gate);
+  void finish_triangle(uint32_t gate, uint32_t a, uint32_t b, uint32_t tip, bool is_new);
+  void note_face();
 
   Coder& coder_;
   const ConnectivityHeader header_;
@@ -299,6 +296,12 @@ bool Walk<Coder>::code_face(uint32_t gate) {
   corners_.push_back(start_of(gate));
   topology_.twin[gate] = n_corners_;  // no longer open: finish_face() adds the other side
   const uint32_t size = size_less_3 + 3;
+  if (topology_.all_triangles) {
+    const uint32_t n_before = topology_.n_vertices;
+    if (!code_corner(2, kOnlyCorner)) return false;
+    finish_triangle(gate, start_of(gate), end_of(gate), corners_.back(), topology_.n_vertices > n_before);
+    return true;
+  }
   for (uint32_t k = 2; k < size; ++k) {
     const Place place = size == 3 ? kOnlyCorner : k == 2 ? kFirstOfSeveral : k + 1 < size ? kMiddle : kLastOfSeveral;
     if (!code_corner(k, place)) return false;
@@ -413,37 +416,19 @@ Step Walk<Coder>::find_step(std::array<uint32_t, kOld>& candidate, uint32_t want
   return kOld;
 }
 
-// The corner that a step leads to. False: corrupt.
+// The vertex that a step leads to. kNone: corrupt.
 template <class Coder>
-bool Walk<Coder>::add_corner(Step step, std::array<uint32_t, kOld>& candidate, uint32_t mesh_vertex) {
-  uint32_t vertex = kNone, wanted = 0;
-  if constexpr (!Coder::kDecodes)
-    if (step == kOld) wanted = source_->coded_vertex[mesh_vertex];
-  switch (step) {
-    case kNew:
-      vertex = add_vertex(mesh_vertex);
-      break;
-    case kAfterAfter:
-      if (candidate[kAfter] != kNone) vertex = open_.after(candidate[kAfter]);
-      break;
-    case kBeforeBefore:
-      if (candidate[kBefore] != kNone) vertex = open_.before(candidate[kBefore]);
-      break;
-    case kOld:
-      if (topology_.n_vertices > 0) {
-        const uint32_t newest = topology_.n_vertices - 1, age = code_plain_number(newest - wanted);
-        if (age <= newest) vertex = newest - age;
-      }
-      break;
-    case kBefore:
-    case kAfter:
-      vertex = candidate[step];
-      break;
-    case kSteps:
-      break;
-  }
-  corners_.push_back(vertex);
-  return vertex != kNone;
+[[gnu::always_inline]] inline uint32_t Walk<Coder>::find_corner(Step step, std::array<uint32_t, kOld>& candidate,
+                                                                uint32_t mesh_vertex) {
+  if (step == kNew) return add_vertex(mesh_vertex);
+  if (step <= kAfter) return candidate[step];
+  if (step == kAfterAfter) return candidate[kAfter] == kNone ? kNone : open_.after(candidate[kAfter]);
+  if (step == kBeforeBefore) return candidate[kBefore] == kNone ? kNone : open_.before(candidate[kBefore]);
+  if (topology_.n_vertices == 0) return kNone;
+  uint32_t wanted = 0;
+  if constexpr (!Coder::kDecodes) wanted = source_->coded_vertex[mesh_vertex];
+  const uint32_t newest = topology_.n_vertices - 1, age = code_plain_number(newest - wanted);
+  return age <= newest ? newest - age : kNone;
 }
 
 // A corner that is not the first beyond a gate in a face of the gate's size. place: first, middle, last.
@@ -466,7 +451,9 @@ bool Walk<Coder>::code_table_corner(uint32_t k, uint32_t place) {
   }
   if (topology_.n_vertices > 0)
     symbol = coder_.symbol(0, corner_context(place, left, right, candidate[kBefore] != candidate[kAfter]), symbol);
-  return symbol <= kOld && add_corner(static_cast<Step>(symbol), candidate, mesh_vertex);
+  if (symbol > kOld) return false;
+  corners_.push_back(find_corner(static_cast<Step>(symbol), candidate, mesh_vertex));
+  return corners_.back() != kNone;
 }
 
 // What lies across a gate, and the face if there is one.
@@ -499,6 +486,14 @@ bool Walk<Coder>::code_gate(uint32_t gate) {
   }
   if (symbol > kOtherSize) return false;
   topology_.twin[gate] = n_corners_;  // no longer open: the face adds the other side
+  if (topology_.all_triangles && symbol <= kOld) {
+    if (n_corners_ == header_.n_corners) return false;
+    uint32_t mesh_vertex = kNone;
+    if constexpr (!Coder::kDecodes) mesh_vertex = source_->mesh_vertex(2);
+    const uint32_t tip = find_corner(static_cast<Step>(symbol), candidate, mesh_vertex);
+    if (tip != kNone) finish_triangle(gate, a, b, tip, symbol == kNew);
+    return tip != kNone;
+  }
   const uint32_t size_less_3 = symbol == kOtherSize ? code_size(0) : gate_size - 3;
   const uint64_t room = header_.n_corners - n_corners_;
   if (size_less_3 > room || size_less_3 + uint64_t{3} > room) return false;
@@ -509,7 +504,8 @@ bool Walk<Coder>::code_gate(uint32_t gate) {
   if (symbol != kOtherSize) {
     uint32_t mesh_vertex = kNone;
     if constexpr (!Coder::kDecodes) mesh_vertex = source_->mesh_vertex(2);
-    if (!add_corner(static_cast<Step>(symbol), candidate, mesh_vertex)) return false;
+    corners_.push_back(find_corner(static_cast<Step>(symbol), candidate, mesh_vertex));
+    if (corners_.back() == kNone) return false;
     ++k;
   }
   const uint32_t size = size_less_3 + 3;
@@ -536,9 +532,36 @@ void Walk<Coder>::finish_face(uint32_t gate) {
   for (uint32_t k = 0; k < size; ++k) {
     const uint32_t from = corners_[k], to = corners_[k + 1 < size ? k + 1 : 0];
     open_.add_edge(first + k, from, to);
-    uint8_t& n_around = open_.at(from).n_faces;
-    n_around = static_cast<uint8_t>(n_around + (n_around < 255 ? 1 : 0));
+    ++open_.at(from).n_faces;
   }
+  note_face();
+}
+
+// The triangle across the gate a -> b, with that third corner.
+template <class Coder>
+void Walk<Coder>::finish_triangle(uint32_t gate, uint32_t a, uint32_t b, uint32_t tip, bool is_new) {
+  const uint32_t first = n_corners_;
+  make_room(first + 3);
+  uint32_t* corner_vertex = topology_.corner_vertex.data() + first;
+  corner_vertex[0] = b;
+  corner_vertex[1] = a;
+  corner_vertex[2] = tip;
+  n_corners_ += 3;
+  ++n_faces_;
+  open_.pair(gate, first);
+  if (is_new) {
+    open_.add_tip(first + 1, a, tip, b);
+  } else {
+    open_.add_edge(first + 1, a, tip);
+    open_.add_edge(first + 2, tip, b);
+  }
+  for (const uint32_t corner : {a, b, tip}) ++open_.at(corner).n_faces;
+  note_face();
+}
+
+// For the encoder: it is coded.
+template <class Coder>
+void Walk<Coder>::note_face() {
   if constexpr (!Coder::kDecodes) {
     source_->edges.take(source_->face);
     source_->order.face.push_back(source_->face);

@@ -8,6 +8,7 @@
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/mesh_check.h"
+#include "geomcodec/position_coder.h"
 #include "geomcodec/position_weights.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
@@ -126,15 +127,22 @@ bool wants_tables(const QuantizedMesh& mesh, Effort effort) {
   return effort == Effort::fast || mesh.vertices.size() >= kManyVertices;
 }
 
-// Whether positions repeat, by rows or by parts, which only the other coding predicts.
+// Whether positions repeat, by rows or by parts, which only the other coding predicts: many vertices of small parts
+// that are where the part before has them.
 bool repeats(const Walked& walked) {
-  uint64_t n_seeds = 0;
-  for (uint32_t face = 0; face < walked.points.n_faces(); ++face) {
-    const uint32_t gate = walked.points.twin[walked.points.face_first[face]];
-    n_seeds += gate == kNone || walked.points.corner_face[gate] >= face ? 1 : 0;
+  const std::vector<Position> positions = positions_of(walked);
+  PositionParts parts(walked.points);
+  uint64_t n_repeated = 0;
+  for (uint32_t v = 1; v < walked.points.n_vertices; ++v) {
+    const uint32_t lag = parts.lag(v);
+    if (lag == 0 || lag >= v) continue;
+    bool repeated = true;
+    for (size_t axis = 0; axis < 3; ++axis)
+      repeated &=
+          positions[v][axis] - positions[v - 1][axis] == positions[v - lag][axis] - positions[v - lag - 1][axis];
+    n_repeated += repeated ? 1 : 0;
   }
-  constexpr uint64_t kSmallParts = 64;  // vertices
-  return n_seeds * kSmallParts > walked.points.n_vertices || find_period(positions_of(walked)) != 0;
+  return 8 * n_repeated > walked.points.n_vertices || find_period(positions) != 0;
 }
 
 void choose_tables(const Walked& walked, Effort effort, Header& header) {

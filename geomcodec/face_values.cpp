@@ -19,7 +19,7 @@ struct FaceNeighbors {
   FaceNeighbors(const Topology& topology, uint32_t of) {
     for (uint32_t corner = topology.face_first[of]; corner < topology.face_first[of + 1] && count < kMax; ++corner) {
       const uint32_t twin = topology.twin[corner];
-      if (twin != kNone && topology.corner_face[twin] < of) face[count++] = topology.corner_face[twin];
+      if (twin != kNone && topology.face_at(twin) < of) face[count++] = topology.face_at(twin);
     }
   }
 };

@@ -10,7 +10,7 @@ namespace {
 // The material of the face that this one was entered from; for the first face of a part, of the face before.
 uint32_t expected_material(const Topology& topology, const std::vector<uint32_t>& material, uint32_t face) {
   const uint32_t gate = topology.twin[topology.face_first[face]];
-  if (gate != kNone && topology.corner_face[gate] < face) return material[topology.corner_face[gate]];
+  if (gate != kNone && topology.face_at(gate) < face) return material[topology.face_at(gate)];
   return face > 0 ? material[face - 1] : 0;
 }
 

@@ -20,9 +20,9 @@ class OpenEdges {
   // What is known of a vertex: all of it in one place, since each step asks for most of it.
   struct Vertex {
     uint32_t out = kNone, in = kNone;  // where its lists of edges that leave and enter it begin: newest corner
-    uint8_t n_faces = 0;               // around it so far, at most 255
-    uint8_t has_border = 0;            // an edge at it has no second face
-    uint8_t queued = 0;                // it is in queue_
+    uint32_t n_faces = 0;              // around it so far
+    uint16_t has_border = 0;           // an edge at it has no second face
+    uint16_t queued = 0;               // it is in queue_
   };
 
   // Corners below n_corners may be added.
@@ -53,6 +53,17 @@ class OpenEdges {
       start.queued = 1;
       queue_.push_back(from);
     }
+  }
+  // The same for the edges to and from a vertex that has no others: from -> added at `corner`, added -> to at the next
+  // one. `from` is in the queue.
+  void add_tip(uint32_t corner, uint32_t from, uint32_t added, uint32_t to) {
+    Vertex &start = vertex_[from], &tip = vertex_[added], &end = vertex_[to];
+    next_[corner] = {start.out, kNone};
+    next_[corner + 1] = {kNone, end.in};
+    start.out = tip.in = corner;
+    tip.out = end.in = corner + 1;
+    tip.queued = 1;
+    queue_.push_back(added);
   }
   // The next edge to build on: the newest one out of the vertex that has waited longest. kNone when none is open.
   uint32_t front() {

@@ -51,7 +51,7 @@ class PositionParts {
     uint32_t n_seen = 0;
     for (uint32_t face = 0; face < topology.n_faces(); ++face) {
       const uint32_t first = topology.face_first[face], gate = topology.twin[first];
-      const bool seed = gate == kNone || topology.corner_face[gate] >= face;
+      const bool seed = gate == kNone || topology.face_at(gate) >= face;
       if (seed && (start_.empty() || start_.back() != n_seen)) start_.push_back(n_seen);
       for (uint32_t corner = first; corner < topology.face_first[face + 1]; ++corner)
         n_seen = std::max(n_seen, topology.corner_vertex[corner] + 1);

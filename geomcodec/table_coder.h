@@ -133,22 +133,44 @@ inline void release(TableDecoder& coder, const TableDecoder& held) {
 }
 inline void release(TableEncoder& /*coder*/, const TableEncoder& /*held*/) {}
 
-// A residual within -2^15 .. 2^15: its magnitude class as a symbol (15 stands for 15 and 16), the rest raw.
+// The magnitude class of a residual within -2^15 .. 2^15 as a symbol; 15 stands for 15 and 16.
+template <class Coder>
+[[gnu::always_inline]] inline uint32_t code_table_class(Coder& coder, uint32_t lane, uint32_t context,
+                                                        int32_t residual) {
+  uint32_t length = 0;
+  if constexpr (!Coder::kDecodes) length = class_of(residual);
+  return coder.symbol(lane, context, length < 15 ? length : 15);
+}
+
+// What the symbol leaves open: the sign, then the bits below the leading one, as one field. Without branches on it but
+// for the rare 15: a symbol is as good as random. Returns the residual's class.
+template <class Coder>
+[[gnu::always_inline]] inline uint32_t code_table_details(Coder& coder, uint32_t symbol, int32_t& residual) {
+  uint32_t length = symbol;
+  if (symbol == 15) {
+    uint32_t longer = 0;
+    if constexpr (!Coder::kDecodes) longer = class_of(residual) - 15;
+    length += coder.raw(1, longer);
+  }
+  const uint32_t leading = (1u << length) >> 1;
+  if constexpr (Coder::kDecodes) {
+    const uint32_t field = coder.raw(static_cast<int>(length));
+    const auto magnitude = static_cast<int32_t>(leading | (field & (leading - 1)));
+    const int32_t negative = -static_cast<int32_t>((field & leading) != 0);
+    residual = (magnitude ^ negative) - negative;
+  } else if (length > 0) {
+    const auto magnitude = static_cast<uint32_t>(residual < 0 ? -residual : residual);
+    coder.raw(static_cast<int>(length), (residual < 0 ? leading : 0) | (magnitude & (leading - 1)));
+  }
+  return length;
+}
+
+// A residual within -2^15 .. 2^15: its magnitude class as a symbol, the rest raw.
 template <class Coder>
 [[gnu::always_inline]] inline int32_t code_table_residual(Coder& coder, uint32_t lane, uint32_t context,
                                                           int32_t residual = 0) {
-  if constexpr (Coder::kDecodes) residual = 0;
-  uint32_t length = class_of(residual);
-  length = coder.symbol(lane, context, length < 15 ? length : 15) + (length == 16 ? 1 : 0);
-  if (length == 15 || length == 16) length = 15 + coder.raw(1, length - 15);
-  if (length == 0) return 0;
-  // The sign, then the bits below the leading one; one field of at most 16 bits.
-  const auto magnitude = static_cast<uint32_t>(residual < 0 ? -residual : residual);
-  const uint32_t leading = 1u << (length - 1);
-  const uint32_t field =
-      coder.raw(static_cast<int>(length), (residual < 0 ? leading : 0) | (magnitude & (leading - 1)));
-  const auto result = static_cast<int32_t>(leading | (field & (leading - 1)));
-  return (field & leading) != 0 ? -result : result;
+  code_table_details(coder, code_table_class(coder, lane, context, residual), residual);
+  return residual;
 }
 
 }  // namespace pac::geomcodec

@@ -42,6 +42,7 @@ class TablePositionCoder {
     uint32_t context[3];
   };
   void predict(uint32_t v, const Stencil& stencil, Prediction& prediction) const;
+  uint32_t code_residuals(auto& coder, const Prediction& prediction, int32_t (&residual)[3]);
   uint32_t code_plain(const Prediction& prediction, Position& position);
   uint32_t code_lifted(const Stencil& stencil, const Prediction& prediction, Position& position);
 
@@ -98,16 +99,28 @@ template <class Coder>
 template <class Coder>
 [[gnu::always_inline]] inline uint32_t TablePositionCoder<Coder>::code_plain(const Prediction& prediction,
                                                                              Position& position) {
-  uint32_t classes = 0;
+  int32_t residual[3] = {0, 0, 0};
+  if constexpr (!Coder::kDecodes)
+    for (size_t axis = 0; axis < 3; ++axis)
+      residual[axis] = ((position[axis] - prediction.at[axis] + half_) & mask_) - half_;
   HeldCoder<Coder> coder = coder_;
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    int32_t residual = 0;
-    if constexpr (!Coder::kDecodes) residual = ((position[axis] - prediction.at[axis] + half_) & mask_) - half_;
-    residual = code_table_residual(coder, axis, prediction.context[axis], residual);
-    position[axis] = static_cast<uint16_t>((prediction.at[axis] + residual) & mask_);
-    classes |= class_of(residual) << 10 * axis;
-  }
+  const uint32_t classes = code_residuals(coder, prediction, residual);
+  for (size_t axis = 0; axis < 3; ++axis)
+    position[axis] = static_cast<uint16_t>((prediction.at[axis] + residual[axis]) & mask_);
   release(coder_, coder);
+  return classes;
+}
+
+// Residuals by role. Returns their classes. All symbols are asked for before the first one's details are.
+template <class Coder>
+[[gnu::always_inline]] inline uint32_t TablePositionCoder<Coder>::code_residuals(auto& coder,
+                                                                                 const Prediction& prediction,
+                                                                                 int32_t (&residual)[3]) {
+  uint32_t symbol[3], classes = 0;
+  for (uint32_t role = 0; role < 3; ++role)
+    symbol[role] = code_table_class(coder, role, prediction.context[role], residual[role]);
+  for (uint32_t role = 0; role < 3; ++role)
+    classes |= code_table_details(coder, symbol[role], residual[role]) << 10 * role;
   return classes;
 }
 
@@ -118,25 +131,30 @@ uint32_t TablePositionCoder<Coder>::code_lifted(const Stencil& stencil, const Pr
   const std::array<int64_t, 3> normal = normal_of(stencil, known_, 2);
   size_t order[3];
   order_by_normal(normal, order);
-  int64_t missed[3] = {0, 0, 0};
-  uint32_t classes = 0;
-  HeldCoder<Coder> coder = coder_;
-  for (uint32_t role = 0; role < 3; ++role) {
-    const size_t axis = order[role];
-    int32_t expected = prediction.at[axis];
-    if (role == 2 && normal[axis] != 0) {
-      const int64_t sign = normal[axis] < 0 ? -1 : 1;
-      const int64_t follows =
-          round_quotient(-sign * (normal[order[0]] * missed[0] + normal[order[1]] * missed[1]), sign * normal[axis]);
-      expected = static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
-    }
-    int32_t residual = 0;
-    if constexpr (!Coder::kDecodes) residual = ((position[axis] - expected + half_) & mask_) - half_;
-    residual = code_table_residual(coder, role, prediction.context[role], residual);
-    position[axis] = static_cast<uint16_t>((expected + residual) & mask_);
-    missed[role] = position[axis] - prediction.at[axis];
-    classes |= class_of(residual) << 10 * role;
+  const auto residual_to = [&](size_t axis, int32_t expected) {
+    return ((position[axis] - expected + half_) & mask_) - half_;
+  };
+  // What the last axis is moved by, once the others are known.
+  const auto last_expected = [&] {
+    const int32_t expected = prediction.at[order[2]];
+    const int64_t of_last = normal[order[2]];
+    if (of_last == 0) return expected;
+    int64_t sum = 0;
+    for (size_t role = 0; role < 2; ++role)
+      sum += normal[order[role]] * (position[order[role]] - prediction.at[order[role]]);
+    const int64_t follows = of_last < 0 ? round_quotient(sum, -of_last) : round_quotient(-sum, of_last);
+    return static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
+  };
+  int32_t residual[3] = {0, 0, 0};
+  if constexpr (!Coder::kDecodes) {
+    for (size_t role = 0; role < 2; ++role) residual[role] = residual_to(order[role], prediction.at[order[role]]);
+    residual[2] = residual_to(order[2], last_expected());
   }
+  HeldCoder<Coder> coder = coder_;
+  const uint32_t classes = code_residuals(coder, prediction, residual);
+  for (size_t role = 0; role < 2; ++role)
+    position[order[role]] = static_cast<uint16_t>((prediction.at[order[role]] + residual[role]) & mask_);
+  position[order[2]] = static_cast<uint16_t>((last_expected() + residual[2]) & mask_);
   release(coder_, coder);
   return classes;
 }

@@ -15,15 +15,16 @@ inline constexpr uint32_t kOpen = 0xFFFFFFFEu;  // while walking: an edge that m
 struct Topology {
   std::vector<uint32_t> face_first = {0};  // n_faces + 1: face f has corners face_first[f] .. face_first[f + 1] - 1
   std::vector<uint32_t> corner_vertex;
-  std::vector<uint32_t> corner_face;
-  std::vector<uint32_t> twin;  // the corner whose edge joins the same vertices the other way round, or kNone
-  uint32_t n_vertices = 0;     // those that faces use
+  std::vector<uint32_t> corner_face;  // empty with all_triangles: use face_at()
+  std::vector<uint32_t> twin;         // the corner whose edge joins the same vertices the other way round, or kNone
+  uint32_t n_vertices = 0;            // those that faces use
   // Every face has three corners, or four: then numbers alone tell which corners follow.
   bool all_triangles = false, all_quads = false;
 
   uint32_t n_faces() const { return static_cast<uint32_t>(face_first.size()) - 1; }
   uint32_t n_corners() const { return static_cast<uint32_t>(corner_vertex.size()); }
   uint32_t face_size(uint32_t face) const { return face_first[face + 1] - face_first[face]; }
+  uint32_t face_at(uint32_t corner) const { return all_triangles ? corner / 3 : corner_face[corner]; }
   uint32_t size_of_face_at(uint32_t corner) const {
     return all_triangles ? 3 : all_quads ? 4 : face_size(corner_face[corner]);
   }
