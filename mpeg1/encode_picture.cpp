@@ -101,6 +101,7 @@ PictureReport Encoder::State::code_at(PictureType type, const PictureOptions& pi
   const size_t before = out.size();
   PictureReport report = write_picture(type, out);
   report.quantizer_scale = mean;
+  rated_scale = wanted.empty() ? mean : scale;  // before the lookahead's factors
   report.size_bytes = out.size() - before;
   return report;
 }

@@ -35,10 +35,12 @@ void Encoder::State::start_group(std::vector<uint8_t>& out) {
 void Encoder::State::look_ahead(const Frame420& frame, const PictureOptions& picture) {
   lookahead.forget();
   frame_in_group = 0;
-  if (picture.following.empty() || has_rate) return;
+  if (has_rate) rate.start_group(1, 1);
+  if (picture.following.empty()) return;
   const auto most = static_cast<size_t>(options.gop_length - 1);
-  lookahead.look(frame, picture.following.first(std::min(most, picture.following.size())), options.quantizer_scale,
-                 bands, kernels.motion, pool);
+  lookahead.look(frame, picture.following.first(std::min(most, picture.following.size())),
+                 has_rate ? rate.usual_quantizer() : options.quantizer_scale, bands, kernels.motion, pool);
+  if (has_rate) rate.start_group(lookahead.finer(0), lookahead.finer_on_average(options.gop_length));
 }
 
 // Long before the limit of 132 codings [2.4.4.2] a macroblock's turn comes: one of kTurns pictures each.
@@ -81,12 +83,12 @@ void Encoder::State::finish_picture(PictureType type) {
 }
 
 // After a picture whose headers began at `before`: zero bytes before the next start code, and the books.
-void Encoder::State::account(const PictureReport& report, size_t before, std::vector<uint8_t>& out) {
+void Encoder::State::account(size_t before, std::vector<uint8_t>& out) {
   if (!has_rate) return;
   const auto size_bits = static_cast<int64_t>(8 * (out.size() - before));
   const int64_t stuffing = rate.stuffing_bits(size_bits);
   out.insert(out.end(), static_cast<size_t>(stuffing / 8), 0);
-  rate.finish_picture(report.quantizer_scale, size_bits, size_bits + stuffing);
+  rate.finish_picture(rated_scale, size_bits, size_bits + stuffing);
 }
 
 Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uint8_t>& out,
@@ -107,7 +109,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     if (starts_group) start_group(out);
     if (starts_group) look_ahead(frame, picture);
     header_bytes = out.size() - before;
-    if (has_rate) rate.start_picture(type);
+    if (has_rate) rate.start_picture(type, lookahead.finer(frame_in_group));
     const double scale =
         picture.quantizer_scale != 0 ? picture.quantizer_scale : std::max(1.0, options.quantizer_scale);
     report = has_rate && free_quantizer ? code_at_rate(type, picture, out) : code_as_told(type, picture, scale, out);
@@ -116,7 +118,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     if (!is_cut) break;
     type = PictureType::I;
   }
-  account(report, before, out);
+  account(before, out);
   report.size_bytes = out.size() - before;
   finish_picture(type);
   ++frame_in_group;
@@ -145,9 +147,10 @@ Result<PictureReport> Encoder::repeat(std::vector<uint8_t>& out) {
   const size_t before = out.size();
   s.skip_macroblocks();
   s.header_bytes = 0;
-  if (s.has_rate) s.rate.start_picture(PictureType::P);
+  if (s.has_rate) s.rate.start_picture(PictureType::P, 1);
   PictureReport report = s.write_picture(PictureType::P, out);
-  s.account(report, before, out);
+  s.rated_scale = 0;
+  s.account(before, out);
   report.size_bytes = out.size() - before;
   fill_planes(view_of(s.reference), Planes::of(s.reconstruction));
   s.finish_picture(PictureType::P);

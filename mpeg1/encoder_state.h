@@ -40,7 +40,7 @@ struct Encoder::State {
   PictureReport code_as_told(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
   void skip_macroblocks();
   PictureReport skip_everything(const PictureOptions& picture, std::vector<uint8_t>& out);
-  void account(const PictureReport& report, size_t before, std::vector<uint8_t>& out);
+  void account(size_t before, std::vector<uint8_t>& out);
   void age_macroblocks();
   void force_intra();
   void make_lambdas();
@@ -79,6 +79,7 @@ struct Encoder::State {
   std::vector<CoefficientStatistics> statistics;  // of each band; empty: matrices stay
   bool has_rate = false;
   RateControl rate;
+  double rated_scale = 0;       // what the picture's size says something about; 0: nothing
   size_t header_bytes = 0;      // of the sequence and group headers before the picture being coded
   std::vector<uint8_t> ages;    // codings of each macroblock since it was intra
   std::vector<uint8_t> still;   // P pictures of the group that left each macroblock without coefficients

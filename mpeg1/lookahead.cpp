@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/exact_math.h"
 #include "mpeg1/coarse_motion.h"
@@ -22,6 +23,10 @@ constexpr double kCodedError = 0.5, kNoise = 1;
 // Squared errors would be in balance at quantizer_scale / sqrt(worth), if what is predicted were not coded again as
 // soon as its reference is finer than itself: measured, the cube root gave most.
 constexpr double kExponent = -1.0 / 3;
+
+// Of what a macroblock is worth, no more goes to the picture before: what many pictures from now on repeat will hardly
+// be what it is now.
+constexpr float kMostPassed = 10;
 
 }  // namespace
 
@@ -102,7 +107,7 @@ void Lookahead::pass_on(const Vectors& vectors, const Shares& shares, const std:
     for (int column = 0; column < columns_; ++column) {
       const auto i = static_cast<size_t>(row * columns_ + column);
       const int x = 32 * column + vectors[i].x_halfpel, y = 32 * row + vectors[i].y_halfpel;
-      const float passed = shares[i] * worth[i] / 1024;
+      const float passed = shares[i] * std::min(worth[i], kMostPassed) / 1024;
       const int right = x & 31, below = y & 31;
       for (int corner = 0; corner < 4; ++corner) {
         const int area = ((corner & 1) != 0 ? right : 32 - right) * ((corner & 2) != 0 ? below : 32 - below);
@@ -111,6 +116,20 @@ void Lookahead::pass_on(const Vectors& vectors, const Shares& shares, const std:
         before[static_cast<size_t>(to_row * columns_ + to_column)] += passed * static_cast<float>(area);
       }
     }
+}
+
+double Lookahead::finer(int picture) const {
+  const float* factors = scales(picture);
+  if (factors == nullptr) return 1;
+  const auto count = static_cast<ptrdiff_t>(columns_) * rows_;
+  return static_cast<double>(count) / std::accumulate(factors, factors + count, 0.0);
+}
+
+double Lookahead::finer_on_average(int group_length) const {
+  if (group_length < 2) return 1;
+  double sum = 0;
+  for (int picture = 1; picture < group_length; ++picture) sum += finer(picture);
+  return sum / (group_length - 1);
 }
 
 void Lookahead::look(const Frame420& first, std::span<const Frame420* const> following, double quantizer_scale,

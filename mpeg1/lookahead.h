@@ -35,6 +35,11 @@ class Lookahead {
     return i < scales_.size() ? scales_[i].data() : nullptr;
   }
 
+  // By how much that makes the picture's quantizers finer, on average; 1 where nothing was looked at.
+  double finer(int picture) const;
+  // The same of the group's P pictures.
+  double finer_on_average(int group_length) const;
+
   // Vectors of its macroblocks to the frame before. Null for the group's first picture, too.
   const MotionVector* vectors(int picture) const {
     const auto i = static_cast<size_t>(picture) - 1;

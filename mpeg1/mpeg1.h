@@ -135,9 +135,9 @@ struct PictureOptions {
   // The frames that come after this one, in order, as many as are known; those after the group are not looked at. Where
   // the picture starts a group the encoder sees from them which macroblocks the group goes on showing, and quantizes
   // those finer than quantizer_scale, here and in the pictures that follow: more bytes at the same quantizer_scale,
-  // fewer at the same error. Frames that come otherwise than told cost bytes, nothing else. No effect with a constant
-  // bit rate, a quantizer_map or a quantizer_scale of the picture's own. Borrowed for the call; fails with bad_argument
-  // where one is null or has another size.
+  // fewer at the same error; at a constant bit rate, less error. Frames that come otherwise than told cost bytes,
+  // nothing else. No effect with a quantizer_map or a quantizer_scale of the picture's own. Borrowed for the call;
+  // fails with bad_argument where one is null or has another size.
   std::span<const Frame420* const> following;
   // 1..31, exactly that for this picture; 0: the sequence's, or the rate control's.
   double quantizer_scale = 0;

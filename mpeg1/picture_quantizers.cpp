@@ -73,9 +73,10 @@ double Encoder::State::set_wanted(PictureType type, const float* scales, double 
 // Between integers the first part of the macroblocks has the smaller quantizer: few changes of it in the stream.
 double Encoder::State::set_quantizers(PictureType type, const PictureOptions& picture, double scale) {
   const bool is_free = !has_rate && picture.quantizer_scale == 0;
-  const float* scales = !picture.quantizer_factors.empty()         ? picture.quantizer_factors.data()
-                        : is_free && picture.quantizer_map.empty() ? lookahead.scales(frame_in_group)
-                                                                   : nullptr;
+  const float* scales = !picture.quantizer_factors.empty() ? picture.quantizer_factors.data()
+                        : picture.quantizer_scale == 0 && picture.quantizer_map.empty()
+                            ? lookahead.scales(frame_in_group)
+                            : nullptr;
   if (scales != nullptr) {
     const double mean = set_wanted(type, scales, scale);
     if (picture.quantizer_factors.empty()) return mean;

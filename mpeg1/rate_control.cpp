@@ -25,13 +25,28 @@ RateControl::RateControl(int64_t bit_rate_bps, int64_t buffer_bits, int rate_mil
       complexity_i_(1200.0 * macroblocks),
       complexity_p_(320.0 * macroblocks) {}
 
+void RateControl::start_group(double finer_i, double finer_p) {
+  group_finer_i_ = finer_i;
+  group_finer_p_ = finer_p;
+}
+
 // A group of N pictures may have N times the rate: as many bits an I picture for each of a P picture as their
-// complexities say.
-void RateControl::start_picture(PictureType type) {
+// complexities say, and how fine they are to be.
+double RateControl::share() const {
+  const double ratio = std::clamp(complexity_i_ / complexity_p_, 1.0, 30.0) * group_finer_i_ / group_finer_p_;
+  const double of_p = per_picture_ * group_length_ / (ratio + group_length_ - 1);
+  return type_ == PictureType::I ? of_p * ratio : of_p * finer_ / group_finer_p_;
+}
+
+double RateControl::usual_quantizer() const {
+  const double of_group = complexity_i_ + complexity_p_ * (group_length_ - 1);
+  return std::clamp(of_group / (per_picture_ * group_length_), 1.0, 31.0);
+}
+
+void RateControl::start_picture(PictureType type, double finer) {
   type_ = type;
-  const double ratio = std::clamp(complexity_i_ / complexity_p_, 1.0, 30.0);
-  const double share = per_picture_ * group_length_ / (ratio + group_length_ - 1);
-  target_ = type == PictureType::I ? share * ratio : share;
+  finer_ = finer;
+  target_ = share();
   target_ += surplus_ / kAbsorb * (type == PictureType::I ? 2 : 1);
   least_ = last_quantizer_ > 0 ? std::max(1.0, last_quantizer_ / kStep) : 1;
   most_ = last_quantizer_ > 0 ? std::min(31.0, last_quantizer_ * kStep) : 31;
@@ -41,7 +56,7 @@ void RateControl::start_picture(PictureType type) {
 }
 
 double RateControl::first_quantizer() const {
-  return std::clamp(complexity() / target_, least_, most_);
+  return std::clamp(complexity() * finer_ / target_, least_, most_);
 }
 
 double RateControl::next_quantizer(double quantizer, int64_t bits, int tries) const {
@@ -69,11 +84,10 @@ int RateControl::vbv_delay(int64_t header_bits) const {
 
 void RateControl::finish_picture(double quantizer, int64_t bits, int64_t bits_with_stuffing) {
   const auto size = static_cast<double>(bits);
-  if (quantizer > 0) (type_ == PictureType::I ? complexity_i_ : complexity_p_) = std::max(size * quantizer, 1.0);
+  double& learned = type_ == PictureType::I ? complexity_i_ : complexity_p_;
+  if (quantizer > 0) learned = std::max(size * quantizer / finer_, 1.0);
   if (quantizer > 0) last_quantizer_ = quantizer;
-  const double ratio = std::clamp(complexity_i_ / complexity_p_, 1.0, 30.0);
-  const double share = per_picture_ * group_length_ / (ratio + group_length_ - 1);
-  surplus_ += (type_ == PictureType::I ? share * ratio : share) - size;
+  surplus_ += share() - size;
   surplus_ = std::clamp(surplus_, -buffer_, buffer_);
   fullness_ = fullness_ - static_cast<double>(bits_with_stuffing) + per_picture_;
 }

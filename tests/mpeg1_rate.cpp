@@ -1,6 +1,7 @@
 // Constant bit rate: the size, the decoder's buffer, the picture types.
 #include <doctest/doctest.h>
 
+#include <tuple>
 #include <vector>
 
 #include "mpeg1/headers.h"
@@ -32,7 +33,11 @@ Sent measure(const std::vector<uint8_t>& bytes) {
 
 TEST_CASE(
     "at a constant bit rate the decoder's buffer neither runs empty nor over, and vbv_delay says how full it is") {
-  for (const auto& [rate, seed] : {std::pair{200000, 1}, {600000, 2}, {3000000, 3}}) {
+  const int n_frames = 40;
+  for (const auto& [rate, seed, is_known] :
+       {std::tuple{200000, 1, false}, {600000, 2, false}, {3000000, 3, false}, {200000, 1, true}, {600000, 2, true}}) {
+    std::vector<Frame420> frames;  // half way another scene
+    for (int i = 0; i < n_frames; ++i) frames.push_back(clip_frame(176, 144, i, i < n_frames / 2 ? seed : seed + 5));
     mpeg1::SequenceOptions options;
     options.width = 176;
     options.height = 144;
@@ -42,11 +47,12 @@ TEST_CASE(
     REQUIRE(encoder.ok());
     double fullness = -1, total = 0;
     double buffer = 0;
-    const int n_frames = 40;
     for (int i = 0; i < n_frames; ++i) {
       std::vector<uint8_t> bytes;
-      // Half way another scene.
-      REQUIRE(encoder->add(clip_frame(176, 144, i, i < 20 ? seed : seed + 5), bytes).ok());
+      const std::vector<const Frame420*> following = frames_after(frames, static_cast<size_t>(i));
+      mpeg1::PictureOptions picture;
+      if (is_known) picture.following = following;
+      REQUIRE(encoder->add(frames[static_cast<size_t>(i)], bytes, picture).ok());
       const Sent sent = measure(bytes);
       if (i == 0) {
         buffer = 16384.0 * mpeg1::read_info(bytes)->sequence.vbv_buffer_size;

@@ -22,7 +22,6 @@ struct EncodeSettings {
 };
 
 int look_ahead_frames(const EncodeSettings& settings, int rate) {
-  if (settings.bit_rate_bps != 0) return 0;
   if (settings.look_ahead >= 0) return settings.look_ahead;
   if (settings.sequence.effort == mpeg1::Effort::fast) return 0;
   const int legal_rate = mpeg1::kPictureRatesMilli[settings.sequence.picture_rate_code];
@@ -146,8 +145,8 @@ int run_mpeg1_encode(Args args) {
       {{"fast", mpeg1::Effort::fast}, {"default", mpeg1::Effort::normal}, {"best", mpeg1::Effort::best}},
       "how hard to search (default: default)");
   options.integer("--look-ahead", "N", settings.look_ahead, 0, 131,
-                  "frames to look at after each I picture, so that more bits go to what they go on showing; not with "
-                  "--bit-rate (default: the group; 0 with --effort fast)");
+                  "frames to look at after each I picture, so that more bits go to what they go on showing "
+                  "(default: the group; 0 with --effort fast)");
   if (const auto code = options.parse(args)) return *code;
   if (options.json && settings.out == "-") return options.usage_error("--json and -o - both want stdout");
   if (options.given("--bit-rate") && options.given("--quantizer-scale"))
