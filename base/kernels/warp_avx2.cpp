@@ -1,4 +1,4 @@
-// Eight pixels at a time: where they were, what is smooth, rows. The filters: warp_filter_avx2.cpp.
+// Eight pixels at a time: where they were and what is smooth. The filters: warp_filter_avx2.cpp.
 #include <immintrin.h>
 
 #include <cstddef>
@@ -335,31 +335,6 @@ void mark_smooth(const uint64_t* mixed, size_t n, uint32_t* keys) {
     if ((mixed[i / 64] >> i % 64 & 1) == 0) keys[i] |= kKeySmooth;
 }
 
-// Of samples with bits below the point, rounded.
-inline __m256i whole(__m256i carried) {
-  return _mm256_srai_epi16(_mm256_add_epi16(carried, _mm256_set1_epi16(1 << (kCarriedBits - 1))), kCarriedBits);
-}
-
-void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
-  const auto sixteen = [](const uint8_t* from, const int16_t* added) {
-    const __m256i wide = _mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
-    const __m256i sum = _mm256_add_epi16(wide, whole(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(added))));
-    return _mm_packus_epi16(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
-  };
-  size_t i = 0;
-  for (; i + 16 <= n; i += 16) {
-    prefetch(base + i, static_cast<ptrdiff_t>(n));  // the next row
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), sixteen(base + i, carried + i));
-  }
-  if (i == n) return;
-  uint8_t last_base[16] = {}, last_out[16];
-  int16_t last_carried[16] = {};
-  __builtin_memcpy(last_base, base + i, n - i);
-  __builtin_memcpy(last_carried, carried + i, (n - i) * sizeof(int16_t));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(last_out), sixteen(last_base, last_carried));
-  __builtin_memcpy(out + i, last_out, n - i);
-}
-
 }  // namespace
 
 void fill_warp_avx2(WarpKernels& table) {
@@ -369,7 +344,6 @@ void fill_warp_avx2(WarpKernels& table) {
   table.find_half_points = find_half_points;
   table.compare_keys = compare_keys;
   table.mark_smooth = mark_smooth;
-  table.add_carried_row = add_carried_row;
 }
 
 }  // namespace pac

@@ -117,6 +117,7 @@ void fill_warp_scalar(WarpKernels& table);
 void fill_warp_sse41(WarpKernels& table);
 void fill_warp_avx2(WarpKernels& table);
 void fill_warp_filters_avx2(WarpKernels& table);
+void fill_warp_rows_avx2(WarpKernels& table);
 void fill_warp_neon(WarpKernels& table);
 
 }  // namespace pac
