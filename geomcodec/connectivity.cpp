@@ -295,6 +295,7 @@ bool Walk<Coder>::code_face(uint32_t gate) {
   corners_.push_back(end_of(gate));
   corners_.push_back(start_of(gate));
   topology_.twin[gate] = n_corners_;  // no longer open: finish_face() adds the other side
+  open_.drop(gate, start_of(gate), end_of(gate));
   const uint32_t size = size_less_3 + 3;
   if (topology_.all_triangles) {
     const uint32_t n_before = topology_.n_vertices;
@@ -486,6 +487,7 @@ bool Walk<Coder>::code_gate(uint32_t gate) {
   }
   if (symbol > kOtherSize) return false;
   topology_.twin[gate] = n_corners_;  // no longer open: the face adds the other side
+  open_.drop(gate, a, b);
   if (topology_.all_triangles && symbol <= kOld) {
     if (n_corners_ == header_.n_corners) return false;
     uint32_t mesh_vertex = kNone;

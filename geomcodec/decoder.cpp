@@ -183,15 +183,15 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
     else
       PAC_CHECK(decode_without_seams(stream, points, Stencils(points), *seams, mesh));
   }
-  mesh.faces.reserve(points.n_faces());
+  mesh.faces.resize(points.n_faces());
   for (uint32_t face = 0; face < points.n_faces(); ++face)
-    mesh.faces.push_back({points.face_first[face], points.face_size(face), (*material)[face]});
-  mesh.indices = std::move(seams->corner_vertex);
+    mesh.faces[face] = {points.face_first[face], points.face_size(face), (*material)[face]};
   if (header.has(kFaceValues)) {
     auto values = decode_face_values(stream.section[kFaceValues], points, header.face_components, header.face_bits);
     if (!values) return at(values.failure(), stream.section_offset(kFaceValues));
     mesh.face_values = std::move(*values);
   }
+  mesh.indices = std::move(header.n_split_vertices == 0 ? points.corner_vertex : seams->corner_vertex);
   if (header.has(kOrder)) {
     auto order = decode_order(stream.section[kOrder], points, header.n_vertices());
     if (!order) return at(order.failure(), stream.section_offset(kOrder));

@@ -236,7 +236,8 @@ QuantizedMesh reorder(const QuantizedMesh& mesh) {
   result.vertices = std::move(walked.vertices);
   for (uint32_t face = 0; face < walked.points.n_faces(); ++face)
     result.faces.push_back({walked.points.face_first[face], walked.points.face_size(face), walked.material[face]});
-  result.indices = std::move(walked.seams.corner_vertex);
+  const bool split = walked.seams.n_vertices() > walked.points.n_vertices;
+  result.indices = std::move(split ? walked.seams.corner_vertex : walked.points.corner_vertex);
   return result;
 }
 

@@ -77,11 +77,13 @@ std::vector<uint8_t> encode_materials(const Topology& topology, std::span<const 
 
 Result<std::vector<uint32_t>> decode_materials(std::span<const uint8_t> bytes, const Topology& topology,
                                                uint32_t highest) {
+  if (highest == 0) return std::vector<uint32_t>(topology.n_faces());
   std::vector<uint32_t> material;
+  material.reserve(topology.n_faces());
   RangeDecoder coder(bytes);
   MaterialCoder<RangeDecoder> materials(coder);
   for (uint32_t face = 0; face < topology.n_faces(); ++face) {
-    material.push_back(highest == 0 ? 0 : materials.code(expected_material(topology, material, face), 0));
+    material.push_back(materials.code(expected_material(topology, material, face), 0));
     if (material.back() > highest) return Failure{Error::corrupt, 0, "material above the highest of the header"};
     if (coder.failed()) return Failure{Error::corrupt, 0, "materials end too early"};
   }

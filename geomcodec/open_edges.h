@@ -3,8 +3,11 @@
 // open edges.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "geomcodec/topology.h"
@@ -26,7 +29,13 @@ class OpenEdges {
   };
 
   // Corners below n_corners may be added.
-  void resize(size_t n_corners) { next_.resize(n_corners); }
+  void resize(size_t n_corners) {
+    if (n_corners <= room_) return;
+    auto grown = std::make_unique_for_overwrite<Links[]>(n_corners);  // an edge's links are written when it opens
+    std::copy_n(next_.get(), room_, grown.get());
+    next_ = std::move(grown);
+    room_ = n_corners;
+  }
   void reserve(size_t n_vertices) {
     vertex_.reserve(n_vertices);
     queue_.reserve(n_vertices);
@@ -43,7 +52,7 @@ class OpenEdges {
     if (const uint32_t newest = vertex_[to].out; newest != kNone && vertex_[from].in != kNone) {
       const bool first = is_open(newest) && end_of(newest) == from;
       if (const uint32_t reverse = first ? newest : find_reverse(from, to); reverse != kNone)
-        return pair(corner, reverse);
+        return drop(reverse, to, from), pair(corner, reverse);
     }
     Vertex& start = vertex_[from];
     next_[corner] = {start.out, vertex_[to].in};
@@ -80,6 +89,13 @@ class OpenEdges {
     topology_.twin[one] = other;
     topology_.twin[other] = one;
   }
+  // An edge from -> to that is no longer open leaves the lists that it heads. Others it leaves when they come to it.
+  void drop(uint32_t corner, uint32_t from, uint32_t to) {
+    uint32_t &out = vertex_[from].out, &in = vertex_[to].in;
+    const Links links = next_[corner];
+    out = out == corner ? links.out : out;
+    in = in == corner ? links.in : in;
+  }
 
   // The vertex before `vertex` (after it) on the boundary: where its newest open edge comes from (goes to), or kNone.
   uint32_t before(uint32_t vertex) {
@@ -96,7 +112,7 @@ class OpenEdges {
   uint32_t end_of(uint32_t corner) const { return topology_.corner_vertex[topology_.next(corner)]; }
   // The corner before one in the lists of its edge's ends: lists are newest first.
   struct Links {
-    uint32_t out = kNone, in = kNone;
+    uint32_t out, in;
   };
   // Edges that are no longer open leave the lists when they come to the front.
   uint32_t newest_out(uint32_t vertex) {
@@ -113,8 +129,9 @@ class OpenEdges {
 
   Topology& topology_;
   std::vector<Vertex> vertex_;
-  std::vector<Links> next_;      // per corner
-  std::vector<uint32_t> queue_;  // vertices with edges to build on, oldest at queue_front_
+  std::unique_ptr<Links[]> next_;  // per corner, of edges that were open
+  size_t room_ = 0;                // of next_
+  std::vector<uint32_t> queue_;    // vertices with edges to build on, oldest at queue_front_
   size_t queue_front_ = 0;
 };
 

@@ -116,7 +116,6 @@ uint64_t key_of(const QuantizedVertex& vertex) {
 
 Seams one_vertex_a_point(const Topology& points) {
   Seams seams;
-  seams.corner_vertex = points.corner_vertex;
   seams.vertex_point.resize(points.n_vertices);
   for (uint32_t v = 0; v < points.n_vertices; ++v) seams.vertex_point[v] = v;
   seams.sibling.assign(points.n_vertices, kNone);

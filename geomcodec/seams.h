@@ -22,7 +22,7 @@ Points find_points(std::span<const QuantizedVertex> vertices);
 
 // Which vertices the corners of a walked mesh use. Vertices are numbered by first appearance.
 struct Seams {
-  std::vector<uint32_t> corner_vertex;  // per corner
+  std::vector<uint32_t> corner_vertex;  // per corner; empty where every point has one vertex: then it is that
   std::vector<uint32_t> vertex_point;   // per vertex: its point
   std::vector<uint32_t> sibling;        // per vertex: the one before it at the same point, or kNone
 
