@@ -33,15 +33,23 @@ inline std::array<int64_t, 3> normal_of(const Stencil& stencil, std::span<const 
   return normal;
 }
 
-// Axes by how far along them the normal points, the farthest last; by three exchanges.
+// Axes by how far along them the normal points, the farthest last; by three exchanges, without branches: which axis is
+// the farthest is as good as random.
 inline void order_by_normal(const std::array<int64_t, 3>& normal, size_t (&order)[3]) {
-  for (size_t i = 0; i < 3; ++i) order[i] = i;
+  uint64_t length[3], axis[3] = {0, 1, 2};
+  for (size_t i = 0; i < 3; ++i) length[i] = static_cast<uint64_t>(std::abs(normal[i]));
   const auto swap_if_longer = [&](size_t i, size_t j) {
-    if (std::abs(normal[order[i]]) > std::abs(normal[order[j]])) std::swap(order[i], order[j]);
+    const uint64_t mask = uint64_t{0} - static_cast<uint64_t>(length[i] > length[j]);
+    const uint64_t lengths = (length[i] ^ length[j]) & mask, axes = (axis[i] ^ axis[j]) & mask;
+    length[i] ^= lengths;
+    length[j] ^= lengths;
+    axis[i] ^= axes;
+    axis[j] ^= axes;
   };
   swap_if_longer(0, 1);
   swap_if_longer(1, 2);
   swap_if_longer(0, 1);
+  for (size_t i = 0; i < 3; ++i) order[i] = axis[i];
 }
 
 // Where a mesh is made of equal parts: parts (seeds of the walk) by their first vertex.

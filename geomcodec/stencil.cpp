@@ -103,12 +103,14 @@ void Stencils::get(uint32_t vertex, bool with_twists, Stencil& stencil) const {
 
 // What the face of one corner at `vertex` offers.
 void Stencils::add_corner(uint32_t vertex, uint32_t corner, bool with_twists, Stencil& stencil) const {
-  const uint32_t next = topology_.next(corner), previous = topology_.previous(corner);
+  const uint32_t face = topology_.face_at(corner);
+  const uint32_t first = topology_.face_first[face], end = topology_.face_first[face + 1], size = end - first;
+  const auto after = [&](uint32_t here) { return here + 1 < end ? here + 1 : first; };
+  const uint32_t next = after(corner), previous = corner > first ? corner - 1 : end - 1;
   const uint32_t a = topology_.corner_vertex[next], b = topology_.corner_vertex[previous];
   if (a < vertex) stencil.add_neighbor(a);
   if (b < vertex) stencil.add_neighbor(b);
   if (a >= vertex || b >= vertex) return;
-  const uint32_t size = topology_.size_of_face_at(corner);
   if (size == 3) {
     const uint32_t across = topology_.twin[next];
     if (across == kNone) return;
@@ -121,7 +123,7 @@ void Stencils::add_corner(uint32_t vertex, uint32_t corner, bool with_twists, St
     const uint32_t right = tip_across(vertex, topology_.previous(across));
     if (left != kNone && right != kNone) stencil.add_twist(left, right, opposite, opposite);
   } else {
-    const uint32_t edge = topology_.next(next);
+    const uint32_t edge = after(next);
     const uint32_t opposite = topology_.corner_vertex[edge];
     if (opposite >= vertex) return;
     stencil.add(a, b, opposite);
