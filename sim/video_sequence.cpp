@@ -1,6 +1,7 @@
 #include "sim/video_sequence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/exact_math.h"
@@ -24,11 +25,16 @@ Result<std::vector<VideoFrame>> code_image_video(const std::vector<Shot>& shots,
   sequence.threads = options.threads;
   PAC_TRY(mpeg1::Encoder encoder, mpeg1::Encoder::create(sequence, options.isa));
   std::vector<VideoFrame> frames;
-  Frame420 frame(width, height);
-  for (const Shot& shot : shots) {
-    frame420_from_rgb(shot.images.high.view(), frame, options.isa);
+  std::vector<Frame420> sources;
+  for (const Shot& shot : shots)
+    frame420_from_rgb(shot.images.high.view(), sources.emplace_back(width, height), options.isa);
+  std::vector<const Frame420*> following;
+  for (const Frame420& source : sources) following.push_back(&source);
+  for (size_t i = 0; i < sources.size(); ++i) {
     VideoFrame coded;
-    PAC_TRY(const mpeg1::PictureReport report, encoder.add(frame, coded.code));
+    mpeg1::PictureOptions picture;
+    picture.following = std::span(following).subspan(i + 1);
+    PAC_TRY(const mpeg1::PictureReport report, encoder.add(sources[i], coded.code, picture));
     coded.quantizer_scale = report.quantizer_scale;
     coded.sent_bytes = coded.code.size();
     if (keep_shown) {
@@ -78,7 +84,8 @@ uint64_t total_bytes(const std::vector<VideoFrame>& frames) {
 
 Result<double> quantizer_for_bytes(uint64_t target_bytes, double first_guess,
                                    const std::function<Result<uint64_t>(double quantizer_scale)>& bytes_at) {
-  constexpr int kPasses = 8;
+  constexpr int kPasses = 10;
+  constexpr double kStep = 0.01;  // of the bytes, that is no progress
   const auto target = static_cast<double>(target_bytes);
   // Bytes fall with the quantizer, nearly as a power of it: interpolate in logarithms between the nearest too large and
   // the nearest small enough.
@@ -87,6 +94,8 @@ Result<double> quantizer_for_bytes(uint64_t target_bytes, double first_guess,
   for (int pass = 0; pass < kPasses; ++pass) {
     PAC_TRY(const uint64_t coded, bytes_at(guess));
     const auto bytes = static_cast<double>(coded);
+    const double end = bytes <= target ? high_bytes : low_bytes;
+    const bool creeps = std::abs(bytes - end) < kStep * end;
     if (bytes <= target) {
       high = guess;
       high_bytes = bytes;
@@ -99,6 +108,8 @@ Result<double> quantizer_for_bytes(uint64_t target_bytes, double first_guess,
     const double power =
         low_bytes > 0 && high_bytes > 0 && high > low ? exact_log(low_bytes / high_bytes) / exact_log(high / low) : 1.0;
     double next = power > 0.1 ? guess * exact_exp(exact_log(bytes / (0.995 * target)) / power) : 0.5 * (low + high);
+    // Where bytes fall in steps, interpolation creeps along a step: then the bracket is halved.
+    if (creeps && low_bytes > 0 && high_bytes > 0) next = 0.5 * (low + high);
     // Towards an end that was not coded yet the way is free; else stay inside the bracket.
     const double floor = low_bytes > 0 ? low + 0.02 * (high - low) : 1.0;
     const double ceiling = high_bytes > 0 ? high - 0.02 * (high - low) : 31.0;

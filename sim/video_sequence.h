@@ -35,8 +35,8 @@ struct ImageVideoOptions {
   Isa isa = best_isa();
 };
 
-// Plain MPEG-1 of H: I and P pictures. The frames' codes one after the other are a stream, but for sequence_end_code.
-// keep_shown = false leaves VideoFrame::shown empty.
+// Plain MPEG-1 of H: I and P pictures, with all frames known to the encoder. The frames' codes one after the other are
+// a stream, but for sequence_end_code. keep_shown = false leaves VideoFrame::shown empty.
 Result<std::vector<VideoFrame>> code_image_video(const std::vector<Shot>& shots, const ImageVideoOptions& options,
                                                  bool keep_shown);
 
@@ -47,7 +47,7 @@ Result<std::vector<VideoFrame>> code_assisted_video(const std::vector<Shot>& sho
 // Of everything sent.
 uint64_t total_bytes(const std::vector<VideoFrame>& frames);
 
-// The quantizer_scale in 1..31 whose sequence has at most `target_bytes` and at least 99 % of them, as near as eight
+// The quantizer_scale in 1..31 whose sequence has at most `target_bytes` and at least 99 % of them, as near as ten
 // passes come; 31 where even that is larger, 1 where even that is smaller. `bytes_at` codes the sequence.
 Result<double> quantizer_for_bytes(uint64_t target_bytes, double first_guess,
                                    const std::function<Result<uint64_t>(double quantizer_scale)>& bytes_at);

@@ -268,6 +268,11 @@ TEST_CASE("the quantizer for a size: within 1 % where there is one, an end of th
     CHECK(bytes <= static_cast<double>(target));
     CHECK(bytes >= 0.985 * static_cast<double>(target));
   }
+  // In steps: the best of them is found.
+  const auto in_steps = [](double q) -> Result<uint64_t> {
+    return static_cast<uint64_t>(q < 4 ? 120000 : q < 7 ? 101000 : q < 8 ? 96000 : 40000);
+  };
+  CHECK(*in_steps(*sim::quantizer_for_bytes(100000, 12, in_steps)) == 96000);
   CHECK(*sim::quantizer_for_bytes(100, 12, bytes_at) == 31.0);
   CHECK(*sim::quantizer_for_bytes(1000000, 12, bytes_at) == 1.0);
 }
