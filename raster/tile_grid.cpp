@@ -31,7 +31,14 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   // The one whose shading leaves the packs as they are goes first.
   const int first = input.has_final_colors[1] ? 1 : 0;
   const int renderings[2] = {first, 1 - first};
-  const bool wanted[2] = {wants_color(input, 0), input.surfaces[1] != nullptr && wants_color(input, 1)};
+  bool wanted[2] = {wants_color(input, 0), input.surfaces[1] != nullptr && wants_color(input, 1)};
+  for (int r = 0; r < 2; ++r) {
+    if (!wanted[r] || !paints_directly(input, r)) continue;
+    const ColorTarget target = color_target(input, area, r);
+    input.kernels->tile.paint_grid(grid_, area.width, area.height, triangles_.data(), r, position(area, {128, 128}),
+                                   input.background, target.rgb, target.stride);
+    wanted[r] = false;
+  }
   if (wanted[0] && wanted[1] && input.shading_samples[0] == input.shading_samples[1])
     return shade_grid(input, area, renderings, first_sample);
   for (const int& rendering : renderings)

@@ -73,18 +73,26 @@ void TilePainter::write_first_sample(const PaintInput& input, const Area& area) 
   if (!input.previous.empty()) write_previous(input, area, origin);
 }
 
-// One sample a pixel whose colors need nothing but interpolation and a texture: they go to the target without sums.
+// Colors that need nothing but interpolation, with several samples once a pixel, and with one perhaps a texture: they
+// go to the target without sums.
 bool TilePainter::paints_directly(const PaintInput& input, int rendering) const {
-  return input.pattern.size() == 1 && fills_squares(input, rendering) && !has_masked_ && !has_blended_;
+  if (has_masked_ || has_blended_) return false;
+  const size_t n_samples = input.pattern.size();
+  if (n_samples == 1) return fills_squares(input, rendering);
+  return n_samples <= kGridSamples && input.shading_samples[rendering] == 1 && input.has_final_colors[rendering];
+}
+
+TilePainter::ColorTarget TilePainter::color_target(const PaintInput& input, const Area& area, int rendering) {
+  const RgbView& target = input.color[rendering];
+  if (target.empty()) return {rgb_[rendering], ptrdiff_t{3 * kTileSize}};
+  return {target.pixel(area.x, area.y), target.stride};
 }
 
 void TilePainter::shade_first_sample(const PaintInput& input, const Area& area, int rendering) {
   const SamplePosition origin = position(area, input.pattern[0]);
   if (!paints_directly(input, rendering))
     return shade_ids(input, {rendering, 0, 1, origin, false}, ids_, area.width, area.height, sums_[rendering]);
-  const RgbView& target = input.color[rendering];
-  uint8_t* const rgb = target.empty() ? rgb_[rendering] : target.pixel(area.x, area.y);
-  const ptrdiff_t stride = target.empty() ? ptrdiff_t{3 * kTileSize} : target.stride;
+  const auto [rgb, stride] = color_target(input, area, rendering);
   const TileKernels& kernels = input.kernels->tile;
   if (input.has_final_colors[rendering])
     kernels.paint_colors(ids_, area.width, area.height, triangles_.data(), rendering, origin, input.background, rgb,

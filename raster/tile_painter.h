@@ -53,6 +53,10 @@ class TilePainter {
     SampleOffset place;
     int number;  // of the group among all of the pixel
   };
+  struct ColorTarget {
+    uint8_t* rgb;  // of the tile's first pixel
+    ptrdiff_t stride;
+  };
   static bool wants_color(const PaintInput& input, int rendering);
   static bool wants_ids(const PaintInput& input);
   static SamplePosition position(const Area& area, SampleOffset offset);
@@ -78,6 +82,7 @@ class TilePainter {
   void shade_packs(const PaintInput& input, const Surface& surface, const ShadePass& pass, const LanePack* packs, int n,
                    uint16_t* sums, const uint32_t* group_ids = nullptr);
   bool paints_directly(const PaintInput& input, int rendering) const;
+  ColorTarget color_target(const PaintInput& input, const Area& area, int rendering);
   void take_whole_groups(const Area& area, int rendering);
   void put_whole_groups_back();
   void shade_whole_groups(const PaintInput& input, const ShadePass& pass, uint16_t* sums);

@@ -498,6 +498,76 @@ TEST_CASE("add_colors, add_textured: several samples at once add what one after 
   }
 }
 
+// Grids of which every sample sees `first`, or those from `from[pixel]` on `second`.
+struct ShownGrid {
+  alignas(32) uint32_t whole[kTilePixels];
+  alignas(32) uint32_t ids[kTilePixels * kGridSamples];
+  SampleGrid grid{};
+
+  ShownGrid(int n, const uint32_t* first, const uint32_t* second, const int* from) {
+    grid.n = n;
+    grid.whole = whole;
+    grid.ids = ids;
+    for (int i = 0; i < kTilePixels; ++i) {
+      whole[i] = from == nullptr ? first[i] : kSplitPixel;
+      for (int s = 0; from != nullptr && s < kGridSamples; ++s)
+        ids[i * kGridSamples + s] = s < from[i] ? first[i] : second[i];
+    }
+  }
+  std::vector<uint8_t> painted(const TileKernels& kernels, const SeenTile& tile, int width, int height, int rendering,
+                               const uint8_t background[3]) const {
+    std::vector<uint8_t> rgb(static_cast<size_t>(kPaintStride) * kTileSize, 77);
+    kernels.paint_grid(grid, width, height, tile.list.data(), rendering, tile.origin, background, rgb.data(),
+                       kPaintStride);
+    return rgb;
+  }
+};
+
+TEST_CASE("paint_grid: means of what the samples show, inside their triangles the colors of one sample a pixel") {
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(67);
+    int different = 0, compared = 0;
+    const uint8_t background[3] = {10, 200, 255};
+    for (uint32_t round = 0; round < 60; ++round) {
+      const SeenTile tile(round);
+      const int n = round % 3 == 0 ? 4 : 16, width = 1 + static_cast<int>(random.bits() % kTileSize);
+      const int height = 32 - static_cast<int>(round % 4), rendering = static_cast<int>(round % 2);
+      uint32_t neighbors[kTilePixels];  // seen outside of their triangles, too
+      int from[kTilePixels];
+      for (int i = 0; i < kTilePixels; ++i) {
+        neighbors[i] = tile.ids[(i + 1) % kTilePixels];
+        from[i] = static_cast<int>(random.bits() % static_cast<uint32_t>(n + 1));
+      }
+      const auto paint = [&](const TileKernels& kernels, const uint32_t* first, const uint32_t* second,
+                             const int* place) {
+        return ShownGrid(n, first, second, place).painted(kernels, tile, width, height, rendering, background);
+      };
+      const std::vector<uint8_t> own = paint(table.tile, tile.ids, nullptr, nullptr);
+      const std::vector<uint8_t> next = paint(table.tile, neighbors, nullptr, nullptr);
+      REQUIRE(own == paint(scalar.tile, tile.ids, nullptr, nullptr));
+      REQUIRE(next == paint(scalar.tile, neighbors, nullptr, nullptr));
+      const std::vector<uint8_t> mixed = paint(table.tile, tile.ids, neighbors, from);
+      std::vector<uint8_t> once(own.size(), 77);
+      table.tile.paint_colors(tile.ids, width, height, tile.list.data(), rendering, tile.origin, background,
+                              once.data(), kPaintStride);
+      const auto same_place = [&](uint32_t id) { return id == 0 || tile.list[id - 1]->planar == 0; };
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < 3 * width; ++x) {
+          const auto at = static_cast<size_t>(y * kPaintStride + x);
+          const int pixel = y * kTileSize + x / 3, first = from[pixel];
+          different += own[at] != once[at] ? 1 : 0;
+          if (tile.ids[pixel] != neighbors[pixel] && !(same_place(tile.ids[pixel]) && same_place(neighbors[pixel])))
+            continue;  // planes and weights differ by roundings, and outside by more
+          different += mixed[at] != (own[at] * first + next[at] * (n - first) + n / 2) / n ? 1 : 0;
+          ++compared;
+        }
+      REQUIRE(different == 0);
+      REQUIRE(mixed == paint(scalar.tile, tile.ids, neighbors, from));
+    }
+    CHECK(compared > 10000);
+  });
+}
+
 TEST_CASE("collect_groups, interpolate_groups: each lane gets the bits that the pack of its own triangle gives it") {
   for (int isa = 0; isa < kIsaCount; ++isa) {
     const Kernels* const table = kernels_for(static_cast<Isa>(isa));

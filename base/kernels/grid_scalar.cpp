@@ -106,12 +106,49 @@ int collect_grid(const SampleGrid& grid, uint32_t samples, int first_row, int la
   return n;
 }
 
+// The rounded final color of a triangle at a pixel's place of shading.
+void color_at(const TileKernels& table, const RasterTriangle& t, int px, int py, SamplePosition origin, int rendering,
+              bool inside, int color[3]) {
+  float rows[3 * kBatchLanes];
+  const LanePack pack{&t, static_cast<uint8_t>(px & ~7), static_cast<uint8_t>(py), 0xFF, {}};
+  table.interpolate(&pack, 1, origin, {rendering, 3, rows, nullptr, 0, 0, 0, 0, inside});
+  for (int c = 0; c < 3; ++c) {
+    const float value = rows[c * kBatchLanes + (px & 7)];
+    color[c] = static_cast<int>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
+  }
+}
+
+void paint_grid(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles, int rendering,
+                SamplePosition origin, const uint8_t background[3], uint8_t* rgb, ptrdiff_t stride) {
+  TileKernels table{};
+  fill_tile_scalar(table);
+  for (int py = 0; py < height; ++py)
+    for (int px = 0; px < width; ++px) {
+      const int at = py * kTileSize + px;
+      const uint32_t whole = grid.whole[at];
+      const uint32_t* const ids = grid.ids + at * kGridSamples;
+      const bool inside =
+          whole != kSplitPixel || std::all_of(ids, ids + grid.n, [&](uint32_t i) { return i == ids[0]; });
+      uint32_t shown = 0;
+      int sums[3] = {grid.n / 2, grid.n / 2, grid.n / 2}, color[3] = {background[0], background[1], background[2]};
+      for (int s = 0; s < grid.n; ++s) {
+        const uint32_t id = whole == kSplitPixel ? ids[s] : whole;
+        if (id != shown && id != 0) color_at(table, *triangles[id - 1], px, py, origin, rendering, inside, color);
+        if (id != shown && id == 0) std::copy_n(background, 3, color);
+        shown = id;
+        for (int c = 0; c < 3; ++c) sums[c] += color[c];
+      }
+      for (int c = 0; c < 3; ++c) rgb[py * stride + 3 * px + c] = static_cast<uint8_t>(sums[c] / grid.n);
+    }
+}
+
 }  // namespace
 
 void fill_grid_scalar(TileKernels& table) {
   table.rasterize_grid = rasterize_grid;
   table.first_sample = first_sample;
   table.collect_grid = collect_grid;
+  table.paint_grid = paint_grid;
 }
 
 }  // namespace pac

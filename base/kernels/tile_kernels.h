@@ -219,6 +219,13 @@ struct TileKernels {
   int (*collect_grid)(const SampleGrid& grid, uint32_t samples, int first_row, int last_row, int width,
                       const RasterTriangle* const* triangles, LanePack* packs);
 
+  // RGB of width x height pixels, rows `stride` bytes apart: the mean over the grid's samples, rounded, of attributes
+  // 0..2 as final colors at `origin` (of pixel (0, 0)), each rounded, of the triangle that they show. By planes in
+  // planar triangles that a pixel shows at all samples, so that the place is inside. Groups of eight are read whole.
+  // Records of attributes as for interpolate_lanes().
+  void (*paint_grid)(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,
+                     int rendering, SamplePosition origin, const uint8_t background[3], uint8_t* rgb, ptrdiff_t stride);
+
   // One pack for each triangle seen in each group of eight of the tile's first width x height pixels, in order. ids: 0
   // = none, else 1 + index into `triangles`; groups of eight are read whole. Room for kTileSize^2 packs; returns how
   // many.

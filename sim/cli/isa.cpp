@@ -77,6 +77,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, rasterize_grid),
     PAC_KERNEL(tile, first_sample),
     PAC_KERNEL(tile, collect_grid),
+    PAC_KERNEL(tile, paint_grid),
     PAC_KERNEL(tile, collect_packs),
     PAC_KERNEL(tile, interpolate),
     PAC_KERNEL(tile, interpolate_lanes),
