@@ -9,22 +9,7 @@
 namespace pac {
 namespace {
 
-inline __m256i load(const int32_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
-inline __m256i load(const uint32_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
-inline void store(void* p, __m256i v) {
-  _mm256_storeu_si256(static_cast<__m256i*>(p), v);
-}
-
-// What will be read so much later that the processor does not see it coming: `n` elements on, or anywhere.
-template <class T>
-inline void prefetch(const T* from, ptrdiff_t n) {
-  const auto address = reinterpret_cast<uintptr_t>(from) + static_cast<uintptr_t>(n) * sizeof(T);
-  _mm_prefetch(reinterpret_cast<const char*>(address), _MM_HINT_T0);
-}
+#include "base/kernels/warp_avx2_memory_simd.inc"
 
 // ---- Places ----
 

@@ -9,21 +9,8 @@
 namespace pac {
 namespace {
 
-inline __m256i load(const int32_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
-inline __m256i load(const uint32_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
-inline void store(void* p, __m256i v) {
-  _mm256_storeu_si256(static_cast<__m256i*>(p), v);
-}
-inline __m128i load(const int16_t* p) {
-  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(p));
-}
-inline __m256i load_16(const int16_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
+#include "base/kernels/warp_avx2_memory_simd.inc"
+
 inline __m256i load_two(const int16_t* low, const int16_t* high) {
   return _mm256_inserti128_si256(_mm256_castsi128_si256(load(low)), load(high), 1);
 }

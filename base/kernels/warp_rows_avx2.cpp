@@ -9,9 +9,7 @@
 namespace pac {
 namespace {
 
-inline __m256i load_16(const int16_t* p) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
-}
+#include "base/kernels/warp_avx2_memory_simd.inc"
 
 // Of samples with bits below the point, rounded.
 inline __m256i whole(__m256i carried) {
@@ -21,13 +19,12 @@ inline __m256i whole(__m256i carried) {
 void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out) {
   const auto sixteen = [](const uint8_t* from, const int16_t* added) {
     const __m256i wide = _mm256_cvtepu8_epi16(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
-    const __m256i sum = _mm256_add_epi16(wide, whole(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(added))));
+    const __m256i sum = _mm256_add_epi16(wide, whole(load_16(added)));
     return _mm_packus_epi16(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1));
   };
   size_t i = 0;
   for (; i + 16 <= n; i += 16) {
-    _mm_prefetch(reinterpret_cast<const char*>(reinterpret_cast<uintptr_t>(base) + i + n),
-                 _MM_HINT_T0);  // the next row
+    prefetch(base, static_cast<ptrdiff_t>(i + n));  // the next row
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), sixteen(base + i, carried + i));
   }
   if (i == n) return;

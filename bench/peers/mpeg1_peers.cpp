@@ -20,7 +20,7 @@ extern "C" {
 #include "base/file_io.h"
 #include "base/metrics.h"
 #include "bench/peers/bd_rate.h"
-#include "bench/peers/y4m_clip.h"
+#include "bench/peers/encode_clip.h"
 #include "mpeg1/mpeg1.h"
 
 namespace {
@@ -62,27 +62,13 @@ void judge(const Clip& clip, Coded& coded) {
   coded.ssim = similarity / static_cast<double>((clip.size() + 4) / 5 * 5);
 }
 
-// `looks_ahead`: the encoder knows the frames that follow.
 Coded encode_ours(const Clip& clip, int quantizer, mpeg1::Effort effort, bool looks_ahead) {
   mpeg1::SequenceOptions options;
-  options.width = clip[0].width();
-  options.height = clip[0].height();
   options.gop_length = kGroup;
   options.quantizer_scale = quantizer;
   options.effort = effort;
   Coded coded;
-  auto encoder = mpeg1::Encoder::create(options);
-  if (!encoder.ok()) return coded;
-  const double start = cpu_seconds();
-  for (size_t i = 0; i < clip.size(); ++i) {
-    mpeg1::PictureOptions picture;
-    std::vector<const Frame420*> following;
-    for (size_t k = i + 1; looks_ahead && k < std::min(clip.size(), i + kGroup); ++k) following.push_back(&clip[k]);
-    picture.following = following;
-    if (!encoder->add(clip[i], coded.bytes, picture).ok()) return coded;
-  }
-  encoder->finish(coded.bytes);
-  coded.seconds = cpu_seconds() - start;
+  coded.seconds = bench::encode_clip(clip, options, looks_ahead, cpu_seconds, coded.bytes);
   return coded;
 }
 

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <utility>
 #include <vector>
 
-#include "bench/peers/y4m_clip.h"
-#include "mpeg1/mpeg1.h"
+#include "bench/peers/encode_clip.h"
 
 namespace {
 
@@ -17,38 +15,24 @@ using namespace pac;
 constexpr int kRounds = 12, kGroup = 15;
 constexpr double kQuantizer = 4;
 
-// `looks_ahead`: the encoder knows the frames that follow.
-double encode_seconds(const bench::Clip& clip, mpeg1::Effort effort, bool looks_ahead, int threads,
-                      std::vector<uint8_t>& bytes) {
-  mpeg1::SequenceOptions options;
-  options.width = clip[0].width();
-  options.height = clip[0].height();
-  options.gop_length = kGroup;
-  options.quantizer_scale = kQuantizer;
-  options.effort = effort;
-  options.threads = threads;
-  bytes.clear();
-  auto encoder = mpeg1::Encoder::create(options);
-  if (!encoder.ok()) return 0;
-  const auto start = std::chrono::steady_clock::now();
-  for (size_t i = 0; i < clip.size(); ++i) {
-    mpeg1::PictureOptions picture;
-    std::vector<const Frame420*> following;
-    for (size_t k = i + 1; looks_ahead && k < std::min(clip.size(), i + kGroup); ++k) following.push_back(&clip[k]);
-    picture.following = following;
-    if (!encoder->add(clip[i], bytes, picture).ok()) return 0;
-  }
-  encoder->finish(bytes);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 void compare(const bench::Clip& clip, const char* name, mpeg1::Effort effort, bool looks_ahead) {
+  mpeg1::SequenceOptions options;
+  options.gop_length = kGroup;
+  options.quantizer_scale = kQuantizer;
+  options.effort = effort;
   double least[2] = {1e9, 1e9};
   std::vector<uint8_t> bytes[2];
   for (int round = 0; round < kRounds; ++round)
     for (const int threads : {1, 2}) {
+      options.threads = threads;
+      std::vector<uint8_t>& coded = bytes[threads - 1];
+      coded.clear();
       double& seconds = least[threads - 1];
-      seconds = std::min(seconds, encode_seconds(clip, effort, looks_ahead, threads, bytes[threads - 1]));
+      seconds = std::min(seconds, bench::encode_clip(clip, options, looks_ahead, wall_seconds, coded));
     }
   const auto n = static_cast<double>(clip.size());
   std::printf("  %-15s one thread %6.1f fps, two %6.1f fps: x%.2f%s\n", name, n / least[0], n / least[1],
