@@ -22,12 +22,14 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
-// Version 4 is there for tables: without any it would be version 3.
+// Version 4 is there for tables: without any it would be version 3. Version 5 says how positions are coded that tables
+// do not code.
 void parse_tables(ByteReader& reader, Header& header) {
   constexpr uint32_t kMayBe =
       1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
   header.tables = reader.u8();
-  if (header.tables == 0 || (header.tables & ~kMayBe) != 0)
+  if ((header.tables == 0 && !header.chooses) || (header.by_tables(kPositions) && header.chooses) ||
+      (header.tables & ~kMayBe) != 0)
     reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
 }
 
@@ -153,9 +155,9 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
                                   uint64_t& header_bytes) {
   const uint8_t flags = flags_of(header);
   std::vector<uint8_t> out(kMagic, kMagic + 3);
-  out.push_back(header.tables == 0 ? kVersion : kVersionWithTables);
+  out.push_back(header.version());
   out.push_back(flags);
-  if (header.tables != 0) out.push_back(header.tables);
+  if (header.version() != kVersion) out.push_back(header.tables);
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
@@ -175,7 +177,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   for (const uint8_t expected : kMagic)
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
   const uint8_t version = reader.u8();
-  if (version != kVersion && version != kVersionWithTables && reader.ok())
+  if ((version < kVersion || version > kVersionThatChooses) && reader.ok())
     return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
@@ -186,12 +188,14 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.keeps_order = (flags & kKeepsOrder) != 0;
   header.constant_color = (flags & kConstantColor) != 0;
   header.trained = (flags & kTrained) != 0;
-  if (version == kVersionWithTables) parse_tables(reader, header);
+  header.chooses = version == kVersionThatChooses;
+  if (version != kVersion) parse_tables(reader, header);
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
   if ((flags & kHasFaceValues) != 0) parse_face_values(reader, header);
   parse_counts(reader, header);
   if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
+  if (header.chooses && !header.has(kPositions)) reader.fail(Error::corrupt, "positions that are not there choose");
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;
@@ -222,7 +226,7 @@ Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
   PAC_TRY(const ParsedStream parsed, parse_stream(bytes));
   const Header& header = parsed.header;
   StreamInfo info;
-  info.version = header.tables == 0 ? kVersion : kVersionWithTables;
+  info.version = header.version();
   info.n_vertices = header.n_vertices();
   info.n_faces = header.n_faces;
   info.n_corners = header.n_corners;

@@ -87,10 +87,11 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
                              const Seams& seams, QuantizedMesh& mesh) {
   const Header& header = stream.header;
   const uint32_t n_positions = header.n_points() + header.n_isolated_vertices;
-  auto positions = header.by_tables(kPositions) ? decode_positions_by_tables(stream.section[kPositions], stencils,
-                                                                             n_positions, header.position_bits)
-                                                : decode_positions(stream.section[kPositions], points, stencils,
-                                                                   n_positions, header.position_bits, header.trained);
+  auto positions =
+      header.by_tables(kPositions)
+          ? decode_positions_by_tables(stream.section[kPositions], stencils, n_positions, header.position_bits)
+          : decode_positions(stream.section[kPositions], points, stencils, n_positions, header.position_bits,
+                             header.trained, header.chooses);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
@@ -138,7 +139,7 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
     const bool done = tables ? decode_positions_and_colors_by_tables(positions, colors, attributes,
                                                                      header.position_bits, mesh.vertices, failure)
                              : decode_positions_and_colors(positions, colors, attributes, header.position_bits,
-                                                           header.trained, mesh.vertices, failure);
+                                                           header.trained, header.chooses, mesh.vertices, failure);
     if (!done) return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {
     PAC_CHECK(decode_vertices(stream, points, stencils, seams, mesh));

@@ -164,16 +164,40 @@ void encode_attributes(const Header& header, const AttributeMesh& mesh, const Wa
     sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits, header.by_tables(kTexcoords));
 }
 
+// Whether it pays to code positions adaptively that tables code in so many bytes: where residuals that choose what they
+// start from take a twentieth less, as on scans, and a twentieth less than by tables.
+bool choosing_pays(const Walked& walked, const Stencils& stencils, std::span<const Position> positions, int bits,
+                   bool trained, size_t bytes_by_tables) {
+  const auto estimate = [&](bool chooses) {
+    return estimate_positions(walked.points, stencils, positions, bits, trained, chooses);
+  };
+  const uint64_t choosing = estimate(true);
+  return 20 * choosing < 19 * 8 * uint64_t{bytes_by_tables} && 20 * choosing < 19 * estimate(false);
+}
+
+void encode_positions_of(const Walked& walked, const Stencils& stencils, const EncodeOptions& options, Header& header,
+                         std::vector<uint8_t>& section) {
+  const std::vector<Position> positions = positions_of(walked);
+  const int bits = header.position_bits;
+  if (header.by_tables(kPositions)) {
+    section = encode_positions_by_tables(stencils, positions, bits);
+    if (options.effort == Effort::fast ||
+        !choosing_pays(walked, stencils, positions, bits, options.trained_priors, section.size()))
+      return;
+    header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
+    header.trained = options.trained_priors;
+  }
+  PositionSection coded = encode_positions(walked.points, stencils, positions, bits, header.trained);
+  section = std::move(coded.bytes);
+  header.chooses = coded.chooses;
+}
+
 // Positions over points, all else over vertices; without seams these are the same mesh.
-void encode_vertices(const Header& header, const Walked& walked, Sections& sections) {
+void encode_vertices(const EncodeOptions& options, Header& header, const Walked& walked, Sections& sections) {
   if (!header.has(kPositions)) return;
   {
     const Stencils stencils(walked.points);
-    const std::vector<Position> positions = positions_of(walked);
-    sections[kPositions] =
-        header.by_tables(kPositions)
-            ? encode_positions_by_tables(stencils, positions, header.position_bits)
-            : encode_positions(walked.points, stencils, positions, header.position_bits, header.trained);
+    encode_positions_of(walked, stencils, options, header, sections[kPositions]);
     if (header.n_split_vertices == 0)
       return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
   }
@@ -194,7 +218,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   Sections sections;
   sections[kConnectivity] = std::move(walked.connectivity_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
-  encode_vertices(header, walked, sections);
+  encode_vertices(options, header, walked, sections);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
   if (header.has(kFaceValues))
     sections[kFaceValues] = encode_face_values(walked.points, face_values_in_order(mesh, walked.order),

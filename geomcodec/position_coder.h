@@ -140,11 +140,31 @@ class PositionCoder {
   Prediction predict(uint32_t v, const Stencil& stencil) const;
   void lift(const Stencil& stencil, Prediction& prediction) const;
   void get_scales(uint32_t v, const Stencil& stencil, uint32_t (&scale)[3]) const;
+  // What residuals may start from: at[1] is the prediction, at[2 .. n - 1] are others.
+  struct Candidates {
+    PackedPosition at[kChoices + 1];  // one more is written before it is dropped
+    size_t n = 1;
+    void add(PackedPosition position) {
+      at[n] = position;
+      bool is_new = n < kChoices;
+      for (size_t i = 1; i < n; ++i) is_new = is_new & (at[i] != position);
+      n += is_new ? 1 : 0;
+    }
+  };
+  Candidates candidates_for(const Stencil& stencil, const Prediction& prediction) const;
   bool code_choice(const Stencil& stencil, const Prediction& prediction, std::span<Position> positions, uint32_t v);
+  void code_start(const Stencil& stencil, const Position& position, Prediction& prediction);
+  uint32_t cheapest(const Candidates& candidates, const Starts& starts, Prediction prediction,
+                    const Position& position) const;
+  int32_t expected_of(const Prediction& prediction, size_t role, const int64_t (&missed)[3]) const;
   void code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction, Position& position);
-  void code_position(uint32_t v, const Stencil& stencil, const Prediction& prediction, std::span<Position> positions) {
-    if (!weights_.exact || !code_choice(stencil, prediction, positions, v))
+  void code_position(uint32_t v, const Stencil& stencil, Prediction& prediction, std::span<Position> positions) {
+    if (weights_.exact && weights_.chooses) {
+      code_start(stencil, positions[v], prediction);
       code_residuals(v, stencil, prediction, positions[v]);
+    } else if (!weights_.exact || !code_choice(stencil, prediction, positions, v)) {
+      code_residuals(v, stencil, prediction, positions[v]);
+    }
   }
   static int32_t cost(const Position& position, const int32_t (&prediction)[3]) {
     uint32_t sum = 0;
@@ -212,6 +232,18 @@ void PositionCoder<Coder>::get_scales(uint32_t v, const Stencil& stencil, uint32
         scaled_mean(static_cast<int32_t>(sum >> 10 * role & 1023), alone ? 1 : stencil.n_neighbors, 1));
 }
 
+// Where the coordinate of one role is expected, those of the roles before having missed the prediction by `missed`.
+template <class Coder>
+inline int32_t PositionCoder<Coder>::expected_of(const Prediction& prediction, size_t role,
+                                                 const int64_t (&missed)[3]) const {
+  const int32_t expected = prediction.at[prediction.order[role]];
+  if (role != 2 || prediction.normal[2] == 0) return expected;
+  const int64_t sign = prediction.normal[2] < 0 ? -1 : 1;
+  const int64_t follows = round_quotient(-sign * (prediction.normal[0] * missed[0] + prediction.normal[1] * missed[1]),
+                                         sign * prediction.normal[2]);
+  return static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
+}
+
 template <class Coder>
 void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction,
                                           Position& position) {
@@ -223,13 +255,7 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
   HeldCoder<Coder> coder = coder_;
   for (size_t role = 0; role < 3; ++role) {
     const size_t axis = prediction.order[role];
-    int32_t expected = prediction.at[axis];
-    if (role == 2 && prediction.normal[2] != 0) {
-      const int64_t sign = prediction.normal[2] < 0 ? -1 : 1;
-      const int64_t follows = round_quotient(
-          -sign * (prediction.normal[0] * missed[0] + prediction.normal[1] * missed[1]), sign * prediction.normal[2]);
-      expected = static_cast<int32_t>(std::clamp<int64_t>(expected + follows, 0, mask_));
-    }
+    const int32_t expected = expected_of(prediction, role, missed);
     int32_t residual = 0;
     if constexpr (!Coder::kDecodes) residual = ((position[axis] - expected + half_) & mask_) - half_;
     auto& classes = models_->classes[role][prediction.basis];
@@ -245,42 +271,96 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
   release(coder_, coder);
 }
 
+// The prediction, each parallelogram's position, and where residuals choose, the first one's sides continued: where
+// triangles cut a grid, one of them is often right and their mean is not.
+template <class Coder>
+inline typename PositionCoder<Coder>::Candidates PositionCoder<Coder>::candidates_for(
+    const Stencil& stencil, const Prediction& prediction) const {
+  Candidates candidates;
+  Position predicted;  // clamped already
+  for (size_t axis = 0; axis < 3; ++axis) predicted[axis] = static_cast<uint16_t>(prediction.at[axis]);
+  candidates.add(PackedPosition(predicted));
+  for (int i = 0; i < stencil.n_parallelograms; ++i) {
+    const Stencil::Parallelogram& p = stencil.parallelogram[i];
+    candidates.add((known_[p.side_1].at + known_[p.side_2].at).less_clamped(known_[p.opposite].at, mask_));
+  }
+  if (!weights_.chooses || stencil.n_parallelograms == 0) return candidates;
+  const Stencil::Parallelogram& p = stencil.parallelogram[0];
+  for (const uint32_t side : {p.side_1, p.side_2})
+    candidates.add((known_[side].at + known_[side].at).less_clamped(known_[p.opposite].at, mask_));
+  return candidates;
+}
+
 // Whether the position is the prediction or one parallelogram's, exactly: parts with flat sides are full of them.
 template <class Coder>
 bool PositionCoder<Coder>::code_choice(const Stencil& stencil, const Prediction& prediction,
                                        std::span<Position> positions, uint32_t v) {
-  PackedPosition candidate[kChoices + 1];  // one more is written before it is dropped
-  size_t n = 1;                            // candidate[1 .. n - 1]
-  const auto add = [&](PackedPosition position) {
-    candidate[n] = position;
-    bool is_new = n < kChoices;
-    for (size_t i = 1; i < n; ++i) is_new = is_new & (candidate[i] != position);
-    n += is_new ? 1 : 0;
-  };
-  Position predicted;  // clamped already
-  for (size_t axis = 0; axis < 3; ++axis) predicted[axis] = static_cast<uint16_t>(prediction.at[axis]);
-  add(PackedPosition(predicted));
-  for (int i = 0; i < stencil.n_parallelograms; ++i) {
-    const Stencil::Parallelogram& p = stencil.parallelogram[i];
-    add((known_[p.side_1].at + known_[p.side_2].at).less_clamped(known_[p.opposite].at, mask_));
-  }
+  const Candidates candidates = candidates_for(stencil, prediction);
+  const size_t n = candidates.n;
   uint32_t choice = 0;
   if constexpr (!Coder::kDecodes) {
-    const auto found = std::find(candidate + 1, candidate + n, PackedPosition(positions[v]));
-    choice = found == candidate + n ? 0 : static_cast<uint32_t>(found - candidate);
+    const auto found = std::find(candidates.at + 1, candidates.at + n, PackedPosition(positions[v]));
+    choice = found == candidates.at + n ? 0 : static_cast<uint32_t>(found - candidates.at);
   }
   choice = code_symbol(coder_, models_->choice_by_basis[prediction.basis][n - 1],
                        models_->choice_by_last[last_choice_][n - 1], choice);
   last_choice_ = std::min<uint32_t>(choice, kChoices - 1);
   if (choice == 0 || choice >= n) return false;
-  for (size_t axis = 0; axis < 3; ++axis) positions[v][axis] = static_cast<uint16_t>(candidate[choice].field(axis));
+  for (size_t axis = 0; axis < 3; ++axis) positions[v][axis] = static_cast<uint16_t>(candidates.at[choice].field(axis));
   return true;
+}
+
+// Which candidate the residuals start from, which then takes the prediction's place.
+template <class Coder>
+void PositionCoder<Coder>::code_start(const Stencil& stencil, const Position& position, Prediction& prediction) {
+  const Candidates candidates = candidates_for(stencil, prediction);
+  const size_t n = candidates.n;
+  if (n <= 2) return;  // the prediction alone
+  SymbolModel& by_basis = models_->choice_by_basis[prediction.basis][n - 1];
+  SymbolModel& by_last = models_->choice_by_last[last_choice_][n - 1];
+  uint32_t choice = 1;
+  if constexpr (!Coder::kDecodes) choice = cheapest(candidates, starts_of(by_basis, by_last), prediction, position);
+  choice = code_symbol(coder_, by_basis, by_last, choice);
+  if (choice == 0 || choice >= n) choice = 1;
+  last_choice_ = choice;
+  if (choice == 1) return;
+  prediction.basis = kChosen;
+  for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = candidates.at[choice].field(axis);
+}
+
+// The encoder's choice: the fewest bits by estimate, eight fifths of the residuals' logarithms beside the symbol.
+template <class Coder>
+uint32_t PositionCoder<Coder>::cheapest(const Candidates& candidates, const Starts& starts, Prediction prediction,
+                                        const Position& position) const {
+  // log2 in 1/256, x > 0, by chords.
+  const auto logarithm = [](uint32_t x) {
+    const uint32_t whole = static_cast<uint32_t>(std::bit_width(x)) - 1;
+    return static_cast<int32_t>(whole * 256 + (x - (1u << whole)) * 256 / (1u << whole));
+  };
+  uint32_t best = 1;
+  int32_t best_cost = 0;
+  for (uint32_t choice = 1; choice < candidates.n; ++choice) {
+    for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = candidates.at[choice].field(axis);
+    int64_t missed[3] = {0, 0, 0};
+    int32_t sum = 0;
+    for (size_t role = 0; role < 3; ++role) {
+      const size_t axis = prediction.order[role];
+      const int32_t residual = ((position[axis] - expected_of(prediction, role, missed) + half_) & mask_) - half_;
+      missed[role] = position[axis] - prediction.at[axis];
+      sum += logarithm(static_cast<uint32_t>(std::abs(residual)) + 1);
+    }
+    const int32_t cost = sum * 8 / 5 - logarithm(uint32_t{starts.at[choice + 1]} - starts.at[choice]);
+    if (choice > 1 && cost >= best_cost) continue;
+    best = choice;
+    best_cost = cost;
+  }
+  return best;
 }
 
 template <class Coder>
 void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Position> positions) {
   known_.emplace_back();
-  const Prediction prediction = predict(v, stencil);
+  Prediction prediction = predict(v, stencil);
   const uint32_t lag = weights_.period != 0 ? weights_.period : parts_.lag(v);
   if (lag == 0 || lag >= v) {
     code_position(v, stencil, prediction, positions);
@@ -295,7 +375,8 @@ void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Po
     repeated.at[axis] =
         std::clamp(positions[v - 1][axis] + positions[v - lag][axis] - positions[v - lag - 1][axis], 0, mask_);
   int32_t(&error)[2] = error_[weights_.period == 0 && parts_.is_first(v) ? 1 : 0];
-  code_position(v, stencil, error[1] < error[0] ? repeated : prediction, positions);
+  Prediction used = error[1] < error[0] ? repeated : prediction;
+  code_position(v, stencil, used, positions);
   known_[v].at = PackedPosition(positions[v]);
   error[0] += (64 * cost(positions[v], prediction.at) - error[0]) >> 3;
   error[1] += (64 * cost(positions[v], repeated.at) - error[1]) >> 3;

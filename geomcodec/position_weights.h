@@ -14,7 +14,17 @@
 namespace pac::geomcodec {
 
 // How well a position's prediction is founded: the first context of its residual.
-enum PositionBasis : uint32_t { kPrevious, kNeighbors, kExtension, kOneParallelogram, kTwo, kMore, kRepeated, kBases };
+enum PositionBasis : uint32_t {
+  kPrevious,
+  kNeighbors,
+  kExtension,
+  kOneParallelogram,
+  kTwo,
+  kMore,
+  kRepeated,
+  kChosen,
+  kBases
+};
 
 inline PositionBasis basis_of(const Stencil& stencil) {
   if (stencil.extended) return kExtension;
@@ -32,6 +42,7 @@ struct PositionWeights {
   bool raw = false;         // no predictions, no other fields: all bits of all coordinates as they are
   bool lifted = false;      // the axis nearest to the surface normal comes last and follows the other two
   bool exact = false;       // first a symbol: which of the predictions is the position itself
+  bool chooses = false;     // with exact: the symbol tells which of them the residuals start from. By version
   uint32_t period = 0;      // vertices repeat those so many before; 0: those of the part before
   bool customized = false;  // some classes have weights of their own
   int8_t share[kClasses][kFeatures] = {};

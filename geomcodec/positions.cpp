@@ -57,10 +57,16 @@ std::vector<uint8_t> encode_windows(const Topology& topology, const Stencils& st
   return coder.finish();
 }
 
+// What all positions would take, in bits, by the bytes of `sample` of them: what weights take is paid once.
+uint64_t estimate_of(size_t n_bytes, const PositionWeights& weights, size_t n_positions, size_t sample) {
+  const uint64_t once = std::min<uint64_t>(weights_bits(weights), 8 * n_bytes);
+  return once + (8 * n_bytes - once) * n_positions / std::max<size_t>(sample, 1);
+}
+
 }  // namespace
 
-std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& stencils,
-                                      std::span<const Position> given, int bits, bool trained) {
+PositionSection encode_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> given,
+                                 int bits, bool trained) {
   std::vector<Position> positions(given.begin(), given.end());
   const size_t n_windows = windows_for(positions.size());
   const size_t sample = n_windows == 1 ? positions.size() : n_windows * kWindow;
@@ -68,10 +74,8 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
   const auto encode_sample = [&](const PositionWeights& weights) {
     return encode_windows(topology, stencils, sampled, positions, n_windows, weights, bits, trained);
   };
-  // What all positions would take, in bits: what weights take is paid once.
   const auto estimate = [&](const std::vector<uint8_t>& bytes, const PositionWeights& weights) {
-    const uint64_t once = std::min<uint64_t>(weights_bits(weights), 8 * bytes.size());
-    return once + (8 * bytes.size() - once) * positions.size() / std::max<size_t>(sample, 1);
+    return estimate_of(bytes.size(), weights, positions.size(), sample);
   };
   PositionWeights best;
   std::vector<uint8_t> best_bytes = encode_sample(best);
@@ -96,15 +100,31 @@ std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& 
   changed = best;
   changed.period = find_period(positions);
   if (changed.period != 0) try_weights(changed);
-  if (best_bits > uint64_t{3} * static_cast<uint64_t>(bits) * positions.size()) best.raw = true;
-  if (n_windows == 1 && !best.raw) return best_bytes;
-  return encode_windows(topology, stencils, {}, positions, 1, best, bits, trained);
+  changed = best;
+  changed.exact = changed.chooses = true;
+  try_weights(changed);
+  if (best_bits > uint64_t{3} * static_cast<uint64_t>(bits) * positions.size()) best = {.raw = true};
+  if (n_windows > 1 || best.raw) best_bytes = encode_windows(topology, stencils, {}, positions, 1, best, bits, trained);
+  return {std::move(best_bytes), best.chooses};
+}
+
+uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> given,
+                            int bits, bool trained, bool chooses) {
+  std::vector<Position> positions(given.begin(), given.end());
+  const size_t n_windows = windows_for(positions.size());
+  const std::vector<Stencil> sampled = stencils_of_windows(stencils, positions.size(), n_windows);
+  const PositionWeights weights{.exact = chooses, .chooses = chooses};
+  const size_t n_bytes =
+      encode_windows(topology, stencils, sampled, positions, n_windows, weights, bits, trained).size();
+  return estimate_of(n_bytes, weights, positions.size(), sampled.size());
 }
 
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
-                                               const Stencils& stencils, uint32_t n_positions, int bits, bool trained) {
+                                               const Stencils& stencils, uint32_t n_positions, int bits, bool trained,
+                                               bool chooses) {
   RangeDecoder coder(bytes);
   PositionWeights weights;
+  weights.chooses = chooses;
   code_weights(coder, weights);
   PositionCoder<RangeDecoder> position_coder(topology, stencils, coder, weights, bits, trained);
   std::vector<Position> positions;

@@ -16,11 +16,20 @@ using Position = std::array<uint16_t, 3>;
 
 // stencils: of `topology`. trained: models start as training left them. positions: of the points in coded order, then
 // of the isolated vertices.
-std::vector<uint8_t> encode_positions(const Topology& topology, const Stencils& stencils,
-                                      std::span<const Position> positions, int bits, bool trained);
+struct PositionSection {
+  std::vector<uint8_t> bytes;
+  bool chooses = false;  // residuals choose what they start from: the stream's version has to say so
+};
+PositionSection encode_positions(const Topology& topology, const Stencils& stencils,
+                                 std::span<const Position> positions, int bits, bool trained);
+// About how many bits all positions take, from a sample, with no shares: residuals start from the prediction, or
+// choose.
+uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> positions,
+                            int bits, bool trained, bool chooses);
 
 // n_positions >= topology.n_vertices. byte_offset of failures counts from the first byte of the section.
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,
-                                               const Stencils& stencils, uint32_t n_positions, int bits, bool trained);
+                                               const Stencils& stencils, uint32_t n_positions, int bits, bool trained,
+                                               bool chooses);
 
 }  // namespace pac::geomcodec

@@ -14,8 +14,8 @@ namespace pac::geomcodec {
 enum PriorSet : uint32_t { kPriorPositions = 0, kPriorGreen = 4, kPriorRedBlue = 7, kPriorSets = 10 };
 inline constexpr size_t kPriorContexts = 2 * kClasses + kClasses + 1;  // by scale in halves, then by other
 
-// Position bases: previous and neighbors; extension and repeated; one parallelogram; two and more.
-inline constexpr uint32_t kPriorOfPositionBasis[7] = {0, 0, 1, 2, 3, 3, 1};
+// Position bases: previous and neighbors; extension and repeated; one parallelogram; two, more, chosen.
+inline constexpr uint32_t kPriorOfPositionBasis[8] = {0, 0, 1, 2, 3, 3, 1, 3};
 // Attribute bases: previous and neighbors; extension and one; two and more.
 inline constexpr uint32_t kPriorOfAttributeBasis[6] = {0, 0, 1, 1, 2, 2};
 

@@ -35,10 +35,11 @@ bool decode_both(Coder& of_positions, Coder& of_colors, const AttributeMesh& mes
 }  // namespace
 
 bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::span<const uint8_t> color_bytes,
-                                 const AttributeMesh& mesh, int position_bits, bool trained,
+                                 const AttributeMesh& mesh, int position_bits, bool trained, bool chooses,
                                  std::span<QuantizedVertex> vertices, VertexFailure& failure) {
   RangeDecoder of_positions(position_bytes), of_colors(color_bytes);
   PositionWeights weights;
+  weights.chooses = chooses;
   code_weights(of_positions, weights);
   PositionCoder<RangeDecoder> coder(mesh.topology, mesh.stencils, of_positions, weights, position_bits, trained);
   std::vector<Position> positions(vertices.size());

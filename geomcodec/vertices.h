@@ -18,7 +18,7 @@ struct VertexFailure {
 // The same positions and colors that decode_positions() and decode_colors() find one after the other, for a mesh whose
 // vertices are its points. vertices: all of them. False: `failure` tells why.
 bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::span<const uint8_t> color_bytes,
-                                 const AttributeMesh& mesh, int position_bits, bool trained,
+                                 const AttributeMesh& mesh, int position_bits, bool trained, bool chooses,
                                  std::span<QuantizedVertex> vertices, VertexFailure& failure);
 // The same where tables code both.
 bool decode_positions_and_colors_by_tables(std::span<const uint8_t> position_bytes,

@@ -152,10 +152,20 @@ TEST_CASE("each header field at its limit and one past it") {
   REQUIRE(decode(header(128 + 4, 16, {16, 4, 0, 0, 0, 0, 0, 0})).ok());
   normals[6] = 17;
   texture[6] = 0;
+  // Version 5 has one more byte: which sections tables code.
+  Bytes choosing_nothing = magic, choosing_by_tables = header(4, 16, {0, 0, 1, 0, 0, 0, 0, 0});
+  choosing_nothing[1] = 'G';
+  for (Bytes* bytes : {&choosing_nothing, &choosing_by_tables}) {
+    (*bytes)[3] = 5;
+    bytes->insert(bytes->begin() + 5, bytes == &choosing_by_tables ? 4 : 0);
+    repair_checksum(*bytes, bytes->size());
+  }
   const uint64_t top = 0x7FFFFFFF;
   const Case cases[] = {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
+      {"choosing without a vertex", choosing_nothing, Error::corrupt, "positions that are not there choose"},
+      {"choosing by tables", choosing_by_tables, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,
        "values of faces are not 1..4 of 1..16 bits"},
       {"values of faces of 0 bits", header(128 + 4, 16, {0, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,

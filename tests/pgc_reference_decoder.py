@@ -295,10 +295,11 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] in (3, 4)
+        assert b[:3] == b"PGC" and b[3] in (3, 4, 5)
         self.flags, self.at, self.b = b[4], 5, b
-        self.tables = self.byte() if b[3] == 4 else 0
-        assert (self.tables > 0) == (b[3] == 4) and self.tables & ~0x3D == 0
+        self.chooses = b[3] == 5
+        self.tables = self.byte() if b[3] > 3 else 0
+        assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if self.chooses else 0x3D) == 0
         self.bits = self.byte()
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
@@ -755,7 +756,9 @@ class Positions:  # section 6
 
     def code(self, v, s, prediction):
         at, order, normal, other, basis = prediction
-        if self.exact and self.choose(v, s, at, basis):
+        if self.exact and self.h.chooses:
+            at, basis = self.start(s, at, basis)
+        elif self.exact and self.choose(v, s, at, basis):
             return
         missed = [0, 0, 0]
         scales = [s.scale(v, lambda x: self.classes[x][role]) for role in range(3)]
@@ -771,18 +774,34 @@ class Positions:  # section 6
                 r = self.d.residual(role, (3 * role + founded) * 35 + scales[role])
             else:
                 r = self.d.residual(("scale", role, basis, scales[role]), ("other", role, basis, other), ("detail", role),
-                                self.h.priors and (self.h.priors[0][(0, 0, 1, 2, 3, 3, 1)[basis]], self.h.priors[1][0]))
+                                self.h.priors and (self.h.priors[0][(0, 0, 1, 2, 3, 3, 1, 3)[basis]], self.h.priors[1][0]))
             self.at[v][axis] = expected + r & self.mask
             missed[role] = self.at[v][axis] - at[axis]
             self.classes[v][role] = abs(r).bit_length()
             other = self.classes[v][role] if role == 0 else max(other, self.classes[v][role])
 
-    def choose(self, v, s, at, basis):
-        candidates = [None, list(at)]
-        for a, b, d in s.parallelograms:
+    def candidates(self, s, at):
+        candidates, corners = [None, list(at)], list(s.parallelograms)
+        if self.h.chooses and corners:
+            a, b, d = corners[0]
+            corners += [(a, a, d), (b, b, d)]
+        for a, b, d in corners:
             p = [max(0, min(self.mask, self.at[a][i] + self.at[b][i] - self.at[d][i])) for i in range(3)]
             if len(candidates) < 8 and p not in candidates:
                 candidates.append(p)
+        return candidates
+
+    def start(self, s, at, basis):
+        candidates = self.candidates(s, at)
+        n = len(candidates)
+        if n == 2:
+            return at, basis
+        choice = self.d.symbol([("choice 1", basis, n), ("choice 2", self.last_choice, n)], n)
+        self.last_choice = choice if 0 < choice < n else 1
+        return (candidates[choice], 7) if 1 < choice < n else (at, basis)
+
+    def choose(self, v, s, at, basis):
+        candidates = self.candidates(s, at)
         n = len(candidates)
         choice = self.d.symbol([("choice 1", basis, n), ("choice 2", self.last_choice, n)], n)
         self.last_choice = min(choice, 7)

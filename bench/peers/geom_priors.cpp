@@ -220,6 +220,7 @@ void train(const QuantizedMesh& mesh, Collected& collected) {
   const Stencils stencils(points);
   RangeDecoder of_positions(stream.section[kPositions]), of_colors(stream.section[kColors]);
   PositionWeights weights;
+  weights.chooses = header.chooses;
   code_weights(of_positions, weights);
   if (weights.raw) return;
   PositionCoder<RangeDecoder> position_coder(points, stencils, of_positions, weights, header.position_bits, false);
