@@ -13,7 +13,7 @@ namespace {
 size_t checksum_offset(const std::vector<uint8_t>& bytes) {
   if (bytes.size() < 6) return bytes.size();
   const uint8_t flags = bytes[4];
-  size_t at = bytes[3] == 4 ? 7 : 6;  // version 4 has a byte more
+  size_t at = bytes[3] >= 4 ? 7 : 6;  // from version 4 on there is a byte more
   const auto number = [&] {
     uint64_t value = 0;
     for (int shift = 0; at < bytes.size(); shift += 7) {
