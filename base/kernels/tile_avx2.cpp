@@ -179,20 +179,23 @@ inline void transpose_halves(const __m256 in[4], __m256 out[4]) {
   out[2] = _mm256_shuffle_ps(t1, t3, 0x44);
   out[3] = _mm256_shuffle_ps(t1, t3, 0xEE);
 }
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void load_columns(const float* const at[8], F8 rows[4]) {
   __m256 in[4], out[4];
   for (int k = 0; k < 4; ++k)
-    in[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[k])), _mm_loadu_ps(at[k + 4]), 1);
+    in[k] =
+        _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[k] + kFrom)), _mm_loadu_ps(at[k + 4] + kFrom), 1);
   transpose_halves(in, out);
   for (int k = 0; k < 4; ++k) rows[k].v = out[k];
 }
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void store_columns(float* const at[8], const F8 rows[4]) {
   const __m256 in[4] = {rows[0].v, rows[1].v, rows[2].v, rows[3].v};
   __m256 out[4];
   transpose_halves(in, out);
   for (int k = 0; k < 4; ++k) {
-    _mm_storeu_ps(at[k], _mm256_castps256_ps128(out[k]));
-    _mm_storeu_ps(at[k + 4], _mm256_extractf128_ps(out[k], 1));
+    _mm_storeu_ps(at[k] + kFrom, _mm256_castps256_ps128(out[k]));
+    _mm_storeu_ps(at[k + 4] + kFrom, _mm256_extractf128_ps(out[k], 1));
   }
 }
 

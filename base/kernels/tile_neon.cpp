@@ -176,16 +176,18 @@ inline void transpose(float32x4_t v[4]) {
   v[2] = vcombine_f32(vget_high_f32(t01.val[0]), vget_high_f32(t23.val[0]));
   v[3] = vcombine_f32(vget_high_f32(t01.val[1]), vget_high_f32(t23.val[1]));
 }
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void load_columns(const float* const at[8], F8 rows[4]) {
   float32x4_t low[4], high[4];
   for (int k = 0; k < 4; ++k) {
-    low[k] = vld1q_f32(at[k]);
-    high[k] = vld1q_f32(at[k + 4]);
+    low[k] = vld1q_f32(at[k] + kFrom);
+    high[k] = vld1q_f32(at[k + 4] + kFrom);
   }
   transpose(low);
   transpose(high);
   for (int k = 0; k < 4; ++k) rows[k] = {low[k], high[k]};
 }
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void store_columns(float* const at[8], const F8 rows[4]) {
   float32x4_t low[4], high[4];
   for (int k = 0; k < 4; ++k) {
@@ -195,8 +197,8 @@ inline void transpose(float32x4_t v[4]) {
   transpose(low);
   transpose(high);
   for (int k = 0; k < 4; ++k) {
-    vst1q_f32(at[k], low[k]);
-    vst1q_f32(at[k + 4], high[k]);
+    vst1q_f32(at[k] + kFrom, low[k]);
+    vst1q_f32(at[k + 4] + kFrom, high[k]);
   }
 }
 

@@ -180,16 +180,18 @@ inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   _mm_storeu_si128(at, _mm_add_epi16(_mm_loadu_si128(at), _mm_and_si128(packed, mask)));
 }
 
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void load_columns(const float* const at[8], F8 rows[4]) {
   __m128 low[4], high[4];
   for (int k = 0; k < 4; ++k) {
-    low[k] = _mm_loadu_ps(at[k]);
-    high[k] = _mm_loadu_ps(at[k + 4]);
+    low[k] = _mm_loadu_ps(at[k] + kFrom);
+    high[k] = _mm_loadu_ps(at[k + 4] + kFrom);
   }
   _MM_TRANSPOSE4_PS(low[0], low[1], low[2], low[3]);
   _MM_TRANSPOSE4_PS(high[0], high[1], high[2], high[3]);
   for (int k = 0; k < 4; ++k) rows[k] = {low[k], high[k]};
 }
+template <int kFrom = 0>
 [[gnu::always_inline]] inline void store_columns(float* const at[8], const F8 rows[4]) {
   __m128 low[4], high[4];
   for (int k = 0; k < 4; ++k) {
@@ -199,8 +201,8 @@ inline void add_masked(uint16_t* sums, I8 values, LaneMask16 mask) {
   _MM_TRANSPOSE4_PS(low[0], low[1], low[2], low[3]);
   _MM_TRANSPOSE4_PS(high[0], high[1], high[2], high[3]);
   for (int k = 0; k < 4; ++k) {
-    _mm_storeu_ps(at[k], low[k]);
-    _mm_storeu_ps(at[k + 4], high[k]);
+    _mm_storeu_ps(at[k] + kFrom, low[k]);
+    _mm_storeu_ps(at[k + 4] + kFrom, high[k]);
   }
 }
 
