@@ -105,6 +105,7 @@ class PositionCoder {
         parts_(topology),
         coder_(coder),
         weights_(weights),
+        twisted_(weights.twisted()),
         bits_(bits),
         mask_((1 << bits) - 1),
         half_(1 << (bits - 1)),
@@ -115,7 +116,7 @@ class PositionCoder {
   // Codes position v; those before it are complete.
   void code(uint32_t v, std::span<Position> positions) {
     if (weights_.raw) return code_raw(positions[v]);
-    stencils_.get(v, true, stencil_);
+    stencils_.get(v, twisted_, stencil_);
     code(v, stencil_, positions);
   }
   // Passes the next vertex over: what follows takes it for predicted as well as the last one. For an encoder that
@@ -123,7 +124,8 @@ class PositionCoder {
   void skip(const Position& position) {
     known_.push_back({PackedPosition(position), known_.empty() ? 0 : known_.back().classes});
   }
-  // The same where the caller has the stencil (with twists) already; not for raw positions.
+  // The same where the caller has the stencil (with twists, if weights have shares of them) already; not for raw
+  // positions.
   void code(uint32_t v, const Stencil& stencil, std::span<Position> positions);
 
  private:
@@ -176,6 +178,7 @@ class PositionCoder {
   PositionParts parts_;
   Coder& coder_;
   const PositionWeights weights_;
+  const bool twisted_;
   const int bits_;
   const int32_t mask_, half_;
   std::unique_ptr<Models> models_;

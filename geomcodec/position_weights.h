@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <span>
 
 #include "geomcodec/positions.h"
@@ -48,6 +49,10 @@ struct PositionWeights {
   int8_t share[kClasses][kFeatures] = {};
   bool own[kClasses] = {};
 
+  // Whether any prediction has a share in the twists: else nobody need look for them.
+  bool twisted() const {
+    return std::any_of(std::begin(share), std::end(share), [](const int8_t(&of)[kFeatures]) { return of[1] != 0; });
+  }
   static size_t class_of(const Stencil& stencil) {
     const int kind = stencil.extended ? 0 : std::min(stencil.n_parallelograms, 3);
     return static_cast<size_t>(kind * 4 + std::clamp(stencil.n_corners - 4, 0, 3));

@@ -49,7 +49,8 @@ bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::s
     else
       coder.code(v, stencil, positions);
   };
-  return decode_both(of_positions, of_colors, mesh, trained, positions, true, code_position, vertices, failure);
+  return decode_both(of_positions, of_colors, mesh, trained, positions, weights.twisted(), code_position, vertices,
+                     failure);
 }
 
 bool decode_positions_and_colors_by_tables(std::span<const uint8_t> position_bytes,
