@@ -82,8 +82,8 @@ PAC_INLINE int read_coefficients(UnitReader& bits, const Dequantize& dequantize,
     const int before = position;
     position += symbol->advance;
     int level = symbol->level;
-    if (position > 63) {
-      if (symbol->advance == kAdvanceEndOfBlock) return before;
+    if (symbol->advance == kAdvanceEndOfBlock) return before;
+    if (position > 63) [[unlikely]] {
       if (symbol->advance == kAdvanceNone) return kInvalidCode;
       if (symbol->advance != kAdvanceEscape) return kPastTheBlock;
       position = before + static_cast<int>(bits.peek(6)) + 1;
