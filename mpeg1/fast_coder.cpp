@@ -92,7 +92,7 @@ MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
 // The target holds the prediction.
 FastCoder::Outcome FastCoder::code_errors() {
   const QuantizerSet& set = *task_.residual.non_intra;
-  const uint32_t reaching = motion_.fdct_macroblock(
+  const uint32_t reaching = motion_.fdct_reaching(
       predicted_samples(task_.source, column_, row_, task_.target, column_, row_), set.least_weight[quantizer()], dct_);
   coded_.n_flat = coded_.n_full = 0;
   coded_.n_tokens = coded_.bits = 0;

@@ -108,6 +108,49 @@ TEST_CASE("fdct_macroblock: every instruction set gives the scalar bits and the 
     }
 }
 
+TEST_CASE("fdct_reaching: what it finds and stores is fdct_macroblock's, at any threshold around the energy") {
+  for (int isa = 0; isa < kIsaCount; ++isa) {
+    const Kernels* table = kernels_for(static_cast<Isa>(isa));
+    if (table == nullptr) continue;
+    uint64_t state = 7;
+    bool found_all = true, stored_all = true;
+    for (int round = 0; round < 4000; ++round) {
+      // Basis functions, whose energy is all in one coefficient, and noise.
+      uint8_t source[384], prediction[384];
+      const int u = round & 7, v = round >> 3 & 7, amplitude = 1 + round / 64 % 40;
+      for (size_t i = 0; i < 384; ++i) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        const size_t x = i < 256 ? i % 16 : i % 8, y = i < 256 ? i / 16 : i % 64 / 8;
+        const double wave = std::cos(static_cast<double>(2 * (x & 7) + 1) * u * 3.14159265358979 / 16) *
+                            std::cos(static_cast<double>(2 * (y & 7) + 1) * v * 3.14159265358979 / 16);
+        const int noise = static_cast<int>(state >> 33) % (2 * amplitude + 1) - amplitude;
+        prediction[i] = 128;
+        const bool is_noise = round % 3 == 0;
+        source[i] = static_cast<uint8_t>(128 + (is_noise ? noise : static_cast<int>(std::lround(amplitude * wave))));
+      }
+      PredictedSamples samples;
+      for (size_t plane = 0; plane < 3; ++plane) {
+        const size_t at = plane == 0 ? 0 : 192 + 64 * plane;
+        samples.source[plane] = source + at, samples.prediction[plane] = prediction + at;
+        samples.source_stride[plane] = samples.prediction_stride[plane] = plane == 0 ? 16 : 8;
+      }
+      alignas(64) int16_t all[384], some[384];
+      table->motion.fdct_macroblock(samples, 1, all);
+      int largest = 0;
+      for (const int16_t c : all) largest = std::max(largest, std::abs(int{c}));
+      for (const int threshold : {1, 3, 5, std::max(1, largest - 1), std::max(1, largest), largest + 1, largest + 9}) {
+        const uint32_t reaching = table->motion.fdct_macroblock(samples, threshold, all);
+        found_all &= table->motion.fdct_reaching(samples, threshold, some) == reaching;
+        for (int pair = 0; pair < 3; ++pair)
+          if ((reaching >> 2 * pair & 3) != 0)
+            stored_all &= std::equal(all + 128 * pair, all + 128 * pair + 128, some + 128 * pair);
+      }
+    }
+    CHECK(found_all);
+    CHECK(stored_all);
+  }
+}
+
 TEST_CASE("idct: every instruction set gives the scalar bits, whatever the input") {
   KernelCheck check(8192);
   for (const int64_t range : {300, 2047, 32767})

@@ -147,8 +147,25 @@ PAC_INLINE uint32_t transform_pair(Block& block, __m256i below, int16_t* coeffic
   return ((above & 0xFFFF) != 0 ? 1u : 0u) | (above >> 16 != 0 ? 2u : 0u);
 }
 
+// What is left of the threshold for the squares of a block's differences. The DCT keeps the sum of squares: with E of
+// the differences no coefficient, times 8, is above 8 sqrt(E), and the transform's own rounding adds less than 4.
+__m256i squares_that_reach(int threshold) {
+  const int sure = threshold < 4 ? 0 : threshold - 4;
+  return _mm256_set1_epi32(sure * sure / 64);
+}
+// Both blocks' squares sum to less.
+PAC_INLINE bool is_weak_pair(const Block& block, __m256i limit) {
+  __m256i sum = _mm256_setzero_si256();
+  for (const __m256i v : block.v) sum = _mm256_add_epi32(sum, _mm256_madd_epi16(v, v));
+  sum = _mm256_add_epi32(sum, _mm256_shuffle_epi32(sum, 0x4E));
+  sum = _mm256_add_epi32(sum, _mm256_shuffle_epi32(sum, 0xB1));
+  return _mm256_movemask_epi8(_mm256_cmpgt_epi32(limit, sum)) == -1;
+}
+
+template <bool kOnlyReaching>
 uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t* coefficients) {
   const __m256i below = _mm256_set1_epi16(static_cast<int16_t>(threshold - 1));
+  const __m256i limit = squares_that_reach(threshold);
   uint32_t reaching = 0;
   Block block;
   for (int half = 0; half < 2; ++half) {
@@ -156,6 +173,7 @@ uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t
     const uint8_t* prediction = samples.prediction[0] + 8 * half * samples.prediction_stride[0];
     for (int y = 0; y < 8; ++y)
       block.v[y] = difference_row(source + y * samples.source_stride[0], prediction + y * samples.prediction_stride[0]);
+    if (kOnlyReaching && is_weak_pair(block, limit)) continue;
     reaching |= transform_pair(block, below, coefficients + 128 * half) << (2 * half);
   }
   const TwoReferences source{samples.source[1], samples.source[2]};
@@ -163,6 +181,7 @@ uint32_t fdct_macroblock(const PredictedSamples& samples, int threshold, int16_t
   for (int y = 0; y < 8; ++y)
     block.v[y] = difference_row(source.row(y * samples.source_stride[1], y * samples.source_stride[2]),
                                 prediction.row(y * samples.prediction_stride[1], y * samples.prediction_stride[2]));
+  if (kOnlyReaching && is_weak_pair(block, limit)) return reaching;
   return reaching | transform_pair(block, below, coefficients + 256) << 4;
 }
 
@@ -191,7 +210,8 @@ void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples,
 void fill_motion_avx2(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
-  table.fdct_macroblock = fdct_macroblock;
+  table.fdct_macroblock = fdct_macroblock<false>;
+  table.fdct_reaching = fdct_macroblock<true>;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }

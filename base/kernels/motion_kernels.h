@@ -64,6 +64,9 @@ struct MotionKernels {
   // at coefficients + 64 * i. Returns which blocks have a coefficient with |c| >= threshold (1..32767): bit i for
   // block i.
   uint32_t (*fdct_macroblock)(const PredictedSamples& samples, int threshold, int16_t* coefficients);
+  // The same, but where neither block of a pair (0 1, 2 3, 4 5) reaches the threshold, its coefficients are
+  // unspecified: blocks of too little energy need no transform.
+  uint32_t (*fdct_reaching)(const PredictedSamples& samples, int threshold, int16_t* coefficients);
 
   // Inverse DCT of `n_blocks` blocks of coefficients (natural order, -2048..2047, block i at coefficients + 64 * i),
   // added to the samples at samples[i] (rows strides[i] apart) and clamped to 0..255. Three bits of fraction stay

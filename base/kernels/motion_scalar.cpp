@@ -285,6 +285,7 @@ void fill_motion_scalar(MotionKernels& table) {
   table.predict8_pair[2] = predict8_pair<2>, table.predict8_pair[3] = predict8_pair<3>;
   table.average = average;
   table.fdct_macroblock = fdct_macroblock;
+  table.fdct_reaching = fdct_macroblock;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
   table.idct_dc_add = idct_dc_add;

@@ -159,6 +159,7 @@ void fill_motion_sse41(MotionKernels& table) {
   fill_shared(table);
   table.satd16 = satd16;
   table.fdct_macroblock = fdct_macroblock;
+  table.fdct_reaching = fdct_macroblock;
   table.idct_add = idct<true>;
   table.idct_put = idct<false>;
 }

@@ -41,6 +41,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(motion, moments16),
     PAC_KERNEL(motion, average),
     PAC_KERNEL(motion, fdct_macroblock),
+    PAC_KERNEL(motion, fdct_reaching),
     PAC_KERNEL(motion, idct_add),
     PAC_KERNEL(motion, idct_put),
     PAC_KERNEL(motion, idct_dc_add),
