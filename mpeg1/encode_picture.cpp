@@ -16,7 +16,7 @@ PictureTask Encoder::State::make_task(PictureType type, const PictureOptions& pi
   task.residual.intra = &intra;
   task.residual.non_intra = &non_intra;
   task.residual.lambda = lambda[type == PictureType::I ? 1 : 0];
-  task.residual.choice = level_choice(type);
+  task.residual.choice = options.effort == Effort::fast ? LevelChoice::drop_small : LevelChoice::trellis;
   task.effort = options.effort;
   task.type = type;
   task.columns = columns;

@@ -33,8 +33,6 @@ struct Encoder::State {
   double reuse() const;
   double intra_scale(size_t macroblock) const;
   void watch_stillness(PictureType type);
-  bool is_mostly_still() const;
-  LevelChoice level_choice(PictureType type) const;
   PictureReport code_at(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);
   PictureReport code_at_rate(PictureType type, const PictureOptions& picture, std::vector<uint8_t>& out);
   PictureReport code_as_told(PictureType type, const PictureOptions& picture, double scale, std::vector<uint8_t>& out);

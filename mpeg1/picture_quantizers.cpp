@@ -115,19 +115,4 @@ void Encoder::State::watch_stillness(PictureType type) {
     if (macroblocks[i].kind != MacroblockKind::intra && macroblocks[i].pattern == 0) ++still[i];
 }
 
-// More than half of the group before was left without coefficients.
-bool Encoder::State::is_mostly_still() const {
-  int64_t sum = 0;
-  for (const uint8_t count : still) sum += count;
-  return n_watched > 0 && 2 * sum > static_cast<int64_t>(still.size()) * n_watched;
-}
-
-// Where a group stands still its I picture is most of the bytes, and the others take so little time that even
-// Effort::fast can afford a trellis for it; for the first one, too, of which there is but one.
-LevelChoice Encoder::State::level_choice(PictureType type) const {
-  const bool is_worth_it =
-      type == PictureType::I && options.gop_length > 1 && (picture_count == 0 || is_mostly_still());
-  return options.effort == Effort::fast && !is_worth_it ? LevelChoice::drop_small : LevelChoice::trellis;
-}
-
 }  // namespace pac::mpeg1
