@@ -145,6 +145,12 @@ inline M8 equal_to(I8 a, uint32_t value) {
 inline uint32_t matching_lanes(I8 a, uint32_t value) {
   return bits(equal_to(a, value));
 }
+inline I8 look_up(const int32_t table[16], I8 at) {
+  const auto* const halves = reinterpret_cast<const __m256i*>(table);
+  const __m256i low = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(halves), at.v);
+  const __m256i high = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(halves + 1), at.v);
+  return {_mm256_blendv_epi8(low, high, _mm256_cmpgt_epi32(at.v, _mm256_set1_epi32(7)))};
+}
 // Halves hold red, green, blue and blue of four lanes. Stored: bytes 0..11 of the first half and 0..3 of the second,
 // then the rest of that.
 inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {

@@ -153,6 +153,12 @@ inline M8 equal_to(I8 a, uint32_t value) {
 inline uint32_t matching_lanes(I8 a, uint32_t value) {
   return bits(equal_to(a, value));
 }
+inline I8 look_up(const int32_t table[16], I8 at) {
+  alignas(16) int32_t lanes[8];
+  store(lanes, at);
+  for (int32_t& lane : lanes) lane = table[lane];
+  return load(lanes);
+}
 inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {
   const auto bytes = [](I8 v) { return vqmovun_s16(vcombine_s16(vqmovn_s32(v.lo), vqmovn_s32(v.hi))); };
   vst3_u8(p, uint8x8x3_t{{bytes(red), bytes(green), bytes(blue)}});

@@ -157,6 +157,12 @@ inline M8 equal_to(I8 a, uint32_t value) {
 inline uint32_t matching_lanes(I8 a, uint32_t value) {
   return bits(equal_to(a, value));
 }
+inline I8 look_up(const int32_t table[16], I8 at) {
+  alignas(16) int32_t lanes[8];
+  store(lanes, at);
+  for (int32_t& lane : lanes) lane = table[lane];
+  return load(lanes);
+}
 inline void store_rgb(uint8_t* p, I8 red, I8 green, I8 blue) {
   const __m128i order = _mm_setr_epi8(0, 4, 8, 1, 5, 9, 2, 6, 10, 3, 7, 11, -1, -1, -1, -1);
   const auto interleaved = [&](__m128i r, __m128i g, __m128i b) {
