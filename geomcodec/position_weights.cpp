@@ -71,17 +71,17 @@ PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, 
 uint32_t find_period(std::span<const Position> positions) {
   constexpr size_t kSample = 4096, kTable = 4096;
   const size_t n = std::min(kSample, positions.size());
-  const auto step = [&](size_t v) {
-    std::array<int32_t, 3> result;
-    for (size_t axis = 0; axis < 3; ++axis) result[axis] = positions[v][axis] - positions[v - 1][axis];
-    return result;
-  };
+  // Steps from vertex to vertex, an axis in 20 bits.
+  std::vector<uint64_t> step(n);
+  for (size_t v = 1; v < n; ++v) {
+    for (size_t axis = 0; axis < 3; ++axis)
+      step[v] = step[v] << 20 | static_cast<uint32_t>(positions[v][axis] + 65536 - positions[v - 1][axis]);
+  }
   // Distances between occurrences of the same three steps.
-  std::vector<uint32_t> last(kTable, 0), votes(kSample, 0);
+  std::vector<uint32_t> last(kTable, 0), votes(n, 0);
   for (size_t v = 4; v < n; ++v) {
     uint64_t hash = 0;
-    for (size_t i = 0; i < 3; ++i)
-      for (const int32_t s : step(v - i)) hash = (hash ^ static_cast<uint32_t>(s)) * 0x9E3779B97F4A7C15u;
+    for (size_t i = 0; i < 3; ++i) hash = (hash ^ step[v - i]) * 0x9E3779B97F4A7C15u;
     uint32_t& before = last[hash >> 52];
     if (before != 0) ++votes[v - before];
     before = static_cast<uint32_t>(v);
@@ -90,12 +90,12 @@ uint32_t find_period(std::span<const Position> positions) {
   size_t best_hits = n / 2;
   for (int round = 0; round < 8; ++round) {
     const auto top = std::max_element(votes.begin(), votes.end());
+    if (top == votes.end() || *top == 0) break;
     const auto period = static_cast<uint32_t>(top - votes.begin());
-    if (*top == 0) break;
     *top = 0;
     for (const uint32_t candidate : {period, 2 * period, 4 * period}) {
       size_t hits = 0;
-      for (size_t v = candidate + 1; v < n; ++v) hits += step(v) == step(v - candidate) ? 1 : 0;
+      for (size_t v = candidate + 1; v < n; ++v) hits += step[v] == step[v - candidate] ? 1 : 0;
       if (hits <= best_hits) continue;
       best_hits = hits;
       best = candidate;
