@@ -187,7 +187,8 @@ void encode_positions_of(const Walked& walked, const Stencils& stencils, const E
     header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
     header.trained = options.trained_priors;
   }
-  PositionSection coded = encode_positions(walked.points, stencils, positions, bits, header.trained);
+  PositionSection coded =
+      encode_positions(walked.points, stencils, positions, bits, header.trained, options.effort == Effort::best);
   section = std::move(coded.bytes);
   header.chooses = coded.chooses;
 }

@@ -79,7 +79,8 @@ QuantizedMesh merge_equal_vertices(const QuantizedMesh& mesh);
 Mesh dequantize(const QuantizedMesh& mesh);
 
 // What an encoder trades for speed. fast: symbols by tables, in any mesh. balanced: by tables from 16,384 vertices on,
-// where a decoder's time shows. best: adaptive models everywhere, the fewest bytes.
+// where a decoder's time shows. best: adaptive models everywhere, and predictions are chosen by coding with each, not
+// by estimates: the fewest bytes.
 enum class Effort { fast, balanced, best };
 
 struct EncodeOptions {

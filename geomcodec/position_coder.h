@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "geomcodec/position_weights.h"
@@ -83,26 +85,39 @@ template <class Coder>
 class PositionCoder {
  public:
   static constexpr size_t kChoices = 8;  // none of the predictions, the mean, single parallelograms
-  struct Models {
+  struct ChoiceModels {
+    SymbolModel choice_by_basis[kBases][kChoices], choice_by_last[kChoices][kChoices];
+    explicit ChoiceModels(bool /*trained*/) {
+      static constexpr auto kEqual = [] {
+        std::array<SymbolModel, kChoices> models;
+        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
+        return models;
+      }();
+      for (auto& models : choice_by_basis) std::copy(kEqual.begin(), kEqual.end(), models);
+      for (auto& models : choice_by_last) std::copy(kEqual.begin(), kEqual.end(), models);
+    }
+  };
+  struct AllModels : ChoiceModels {
     ClassModels<kClasses + 1> classes[3][kBases];
     DetailModel details[3];
-    SymbolModel choice_by_basis[kBases][kChoices], choice_by_last[kChoices][kChoices];
-    explicit Models(bool trained) {
+    explicit AllModels(bool trained) : ChoiceModels(trained) {
       for (auto& role : classes)
         for (size_t basis = 0; trained && basis < kBases; ++basis)
           role[basis].start_from(kPriorModels[kPriorPositions + kPriorOfPositionBasis[basis]]);
       if (trained) std::fill_n(details, 3, kPriorDetails[kDetailsOfPositions]);
-      for (auto& models : choice_by_basis)
-        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
-      for (auto& models : choice_by_last)
-        for (size_t n = 1; n < kChoices; ++n) models[n] = SymbolModel(static_cast<int>(n) + 1);
     }
   };
+  // Estimates need no models of residuals.
+  using Models = std::conditional_t<Coder::kEstimates, ChoiceModels, AllModels>;
 
   PositionCoder(const Topology& topology, const Stencils& stencils, Coder& coder, const PositionWeights& weights,
                 int bits, bool trained)
+      : PositionCoder(PositionParts(topology), stencils, coder, weights, bits, trained) {}
+  // parts: the topology's, from their beginning.
+  PositionCoder(PositionParts parts, const Stencils& stencils, Coder& coder, const PositionWeights& weights, int bits,
+                bool trained)
       : stencils_(stencils),
-        parts_(topology),
+        parts_(std::move(parts)),
         coder_(coder),
         weights_(weights),
         twisted_(weights.twisted()),
@@ -261,9 +276,13 @@ void PositionCoder<Coder>::code_residuals(uint32_t v, const Stencil& stencil, co
     const int32_t expected = expected_of(prediction, role, missed);
     int32_t residual = 0;
     if constexpr (!Coder::kDecodes) residual = ((position[axis] - expected + half_) & mask_) - half_;
-    auto& classes = models_->classes[role][prediction.basis];
-    residual =
-        code_residual(coder, classes.by_scale[scale[role]], classes.by_other[other], models_->details[role], residual);
+    if constexpr (Coder::kEstimates) {
+      coder.residual(role, scale[role], residual);
+    } else {
+      auto& classes = models_->classes[role][prediction.basis];
+      residual = code_residual(coder, classes.by_scale[scale[role]], classes.by_other[other], models_->details[role],
+                               residual);
+    }
     position[axis] = static_cast<uint16_t>((expected + residual) & mask_);
     missed[role] = position[axis] - prediction.at[axis];
     const uint32_t its_class = class_of(residual);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "geomcodec/position_coder.h"
+#include "geomcodec/size_estimator.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 // Choices are made on the whole of a small mesh, else on windows of so many vertices, spread over it: the same choices
 // on all of bench/peers/geom_peers as with three times as many.
 constexpr size_t kWindow = 128, kWindows = 16, kSmall = 2048;
+// From so many positions on estimates are good enough to choose by.
+constexpr size_t kEstimated = 256;
 
 size_t windows_for(size_t n_positions) {
   return n_positions <= kSmall ? 1 : kWindows;
@@ -35,88 +38,154 @@ std::vector<Stencil> stencils_of_windows(const Stencils& stencils, size_t n_posi
   return sampled;
 }
 
-// The vertices of `n_windows` windows, or all of them as one. sampled: their stencils, or none where the coder is to
-// find them.
-std::vector<uint8_t> encode_windows(const Topology& topology, const Stencils& stencils,
-                                    std::span<const Stencil> sampled, std::vector<Position>& positions,
-                                    size_t n_windows, PositionWeights weights, int bits, bool trained) {
-  RangeEncoder coder;
-  code_weights(coder, weights);
-  PositionCoder<RangeEncoder> position_coder(topology, stencils, coder, weights, bits, trained);
-  size_t v = 0, n_coded = 0;
-  for (size_t i = 0; i < n_windows; ++i) {
-    const Window window(positions.size(), i, n_windows);
-    for (; v < window.begin; ++v) position_coder.skip(positions[v]);
-    for (; v < window.end; ++v) {
-      if (sampled.empty())
-        position_coder.code(static_cast<uint32_t>(v), positions);
-      else
-        position_coder.code(static_cast<uint32_t>(v), sampled[n_coded++], positions);
+// What all trials on one mesh share.
+struct Trials {
+  const Topology& topology;
+  const Stencils& stencils;
+  std::vector<Position> positions;
+  int bits;
+  bool trained;
+  PositionParts parts;
+  size_t n_windows;
+  std::vector<Stencil> sampled;
+  bool codes_all;  // nothing is told by estimates alone
+
+  Trials(const Topology& topology_given, const Stencils& stencils_given, std::span<const Position> given,
+         int bits_given, bool trained_given, bool all)
+      : topology(topology_given),
+        stencils(stencils_given),
+        positions(given.begin(), given.end()),
+        bits(bits_given),
+        trained(trained_given),
+        parts(topology_given),
+        n_windows(windows_for(given.size())),
+        sampled(stencils_of_windows(stencils_given, given.size(), n_windows)),
+        codes_all(all || given.size() < kEstimated) {}
+
+  // The sampled vertices, by a RangeEncoder or a SizeEstimator.
+  template <class Coder>
+  void code_sample(Coder& coder, const PositionWeights& weights) {
+    PositionCoder<Coder> position_coder(parts, stencils, coder, weights, bits, trained);
+    size_t v = 0, n_coded = 0;
+    for (size_t i = 0; i < n_windows; ++i) {
+      const Window window(positions.size(), i, n_windows);
+      for (; v < window.begin; ++v) position_coder.skip(positions[v]);
+      for (; v < window.end; ++v) position_coder.code(static_cast<uint32_t>(v), sampled[n_coded++], positions);
     }
   }
-  return coder.finish();
+  std::vector<uint8_t> encode_sample(PositionWeights weights) {
+    RangeEncoder coder;
+    code_weights(coder, weights);
+    code_sample(coder, weights);
+    return coder.finish();
+  }
+  std::vector<uint8_t> encode_all(PositionWeights weights) {
+    RangeEncoder coder;
+    code_weights(coder, weights);
+    PositionCoder<RangeEncoder> position_coder(parts, stencils, coder, weights, bits, trained);
+    for (uint32_t v = 0; v < positions.size(); ++v) position_coder.code(v, positions);
+    return coder.finish();
+  }
+  // What all positions would take, in bits, by what the sample of them takes; weights are paid once.
+  uint64_t extrapolated(uint64_t sample_bits) const {
+    return sample_bits * positions.size() / std::max<size_t>(sampled.size(), 1);
+  }
+  // By the sample's bytes.
+  uint64_t bits_of(const std::vector<uint8_t>& bytes, const PositionWeights& weights) const {
+    const uint64_t all = 8 * bytes.size(), once = std::min<uint64_t>(weights_bits(weights), all);
+    return once + extrapolated(all - once);
+  }
+  uint64_t estimate(const PositionWeights& weights) {
+    SizeEstimator estimator;
+    code_sample(estimator, weights);
+    return weights_bits(weights) + extrapolated(estimator.bits());
+  }
+};
+
+struct Choice {
+  PositionWeights weights;
+  uint64_t estimate = 0;        // bits of all positions
+  std::vector<uint8_t> sample;  // coded; empty: not yet
+};
+
+Choice estimated(Trials& trials, const PositionWeights& weights) {
+  return {weights, trials.estimate(weights), {}};
 }
 
-// What all positions would take, in bits, by the bytes of `sample` of them: what weights take is paid once.
-uint64_t estimate_of(size_t n_bytes, const PositionWeights& weights, size_t n_positions, size_t sample) {
-  const uint64_t once = std::min<uint64_t>(weights_bits(weights), 8 * n_bytes);
-  return once + (8 * n_bytes - once) * n_positions / std::max<size_t>(sample, 1);
+// Bits of all positions by coding the sample, once.
+uint64_t coded_bits(Trials& trials, Choice& choice) {
+  if (choice.sample.empty()) choice.sample = trials.encode_sample(choice.weights);
+  return trials.bits_of(choice.sample, choice.weights);
+}
+
+// Replaces `best` where `other` takes fewer bits: by estimates where they are farther apart than 1/256, else as coded.
+void prefer(Trials& trials, Choice& best, Choice other) {
+  const uint64_t lower = std::min(best.estimate, other.estimate), higher = std::max(best.estimate, other.estimate);
+  const bool told = !trials.codes_all && (lower == higher || 256 * (higher - lower) > higher);
+  const bool is_less = told ? other.estimate < best.estimate : coded_bits(trials, other) < coded_bits(trials, best);
+  if (is_less) best = std::move(other);
+}
+
+// The parallelograms' corrections, and lifting.
+Choice choose_prediction(Trials& trials) {
+  Choice best = estimated(trials, {});
+  const std::span<const Stencil> first(trials.sampled.data(), trials.n_windows == 1 ? trials.sampled.size() : 0);
+  const PositionWeights fitted = fit_weights(trials.topology, trials.stencils, first, trials.positions);
+  if (fitted.customized) prefer(trials, best, estimated(trials, fitted));
+  PositionWeights lifted = best.weights;
+  lifted.lifted = true;
+  prefer(trials, best, estimated(trials, lifted));
+  return best;
+}
+
+// Exact candidates, repetition, choosing. Estimates tell where choosing is better by far and where the others cannot
+// pay; else they are coded, as positions that repeat or are hit exactly take other sums than estimates say.
+void choose_candidates(Trials& trials, Choice& best) {
+  PositionWeights with_exact = best.weights, choosing = best.weights;
+  with_exact.exact = choosing.exact = choosing.chooses = true;
+  const uint32_t period = find_period(trials.positions);
+  const bool codes_all = period != 0 || trials.codes_all;
+  Choice chooses = estimated(trials, choosing);
+  if (!codes_all && 50 * chooses.estimate < 49 * best.estimate) {
+    best = std::move(chooses);
+    return;
+  }
+  const auto try_weights = [&](const PositionWeights& weights) {
+    Choice other{weights, 0, {}};
+    if (coded_bits(trials, other) < coded_bits(trials, best)) best = std::move(other);
+  };
+  const bool tries_exact = codes_all || 100 * trials.estimate(with_exact) < 99 * best.estimate;
+  const bool tries_choosing = codes_all || 1000 * chooses.estimate < 1003 * best.estimate;
+  if (tries_exact) try_weights(with_exact);
+  if (period != 0) {
+    PositionWeights repeating = best.weights;
+    repeating.period = period;
+    try_weights(repeating);
+  }
+  choosing.period = best.weights.period;
+  if (tries_choosing) try_weights(choosing);
 }
 
 }  // namespace
 
 PositionSection encode_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> given,
-                                 int bits, bool trained) {
-  std::vector<Position> positions(given.begin(), given.end());
-  const size_t n_windows = windows_for(positions.size());
-  const size_t sample = n_windows == 1 ? positions.size() : n_windows * kWindow;
-  const std::vector<Stencil> sampled = stencils_of_windows(stencils, positions.size(), n_windows);
-  const auto encode_sample = [&](const PositionWeights& weights) {
-    return encode_windows(topology, stencils, sampled, positions, n_windows, weights, bits, trained);
-  };
-  const auto estimate = [&](const std::vector<uint8_t>& bytes, const PositionWeights& weights) {
-    return estimate_of(bytes.size(), weights, positions.size(), sample);
-  };
-  PositionWeights best;
-  std::vector<uint8_t> best_bytes = encode_sample(best);
-  uint64_t best_bits = estimate(best_bytes, best);
-  const auto try_weights = [&](const PositionWeights& weights) {
-    std::vector<uint8_t> bytes = encode_sample(weights);
-    const uint64_t size = estimate(bytes, weights);
-    if (size >= best_bits) return;
-    best_bits = size;
-    best_bytes = std::move(bytes);
-    best = weights;
-  };
-  const std::span<const Stencil> first(sampled.data(), n_windows == 1 ? sampled.size() : 0);
-  if (const PositionWeights fitted = fit_weights(topology, stencils, first, positions); fitted.customized)
-    try_weights(fitted);
-  PositionWeights changed = best;
-  changed.lifted = true;
-  try_weights(changed);
-  changed = best;
-  changed.exact = true;
-  try_weights(changed);
-  changed = best;
-  changed.period = find_period(positions);
-  if (changed.period != 0) try_weights(changed);
-  changed = best;
-  changed.exact = changed.chooses = true;
-  try_weights(changed);
-  if (best_bits > uint64_t{3} * static_cast<uint64_t>(bits) * positions.size()) best = {.raw = true};
-  if (n_windows > 1 || best.raw) best_bytes = encode_windows(topology, stencils, {}, positions, 1, best, bits, trained);
-  return {std::move(best_bytes), best.chooses};
+                                 int bits, bool trained, bool codes_all) {
+  Trials trials(topology, stencils, given, bits, trained, codes_all);
+  Choice best = choose_prediction(trials);
+  choose_candidates(trials, best);
+  const uint64_t raw_bits = uint64_t{3} * static_cast<uint64_t>(bits) * given.size();
+  const bool raw = (trials.n_windows == 1 || !best.sample.empty() || 10 * best.estimate > 9 * raw_bits) &&
+                   coded_bits(trials, best) > raw_bits;
+  if (raw) best.weights = {.raw = true};
+  const bool is_whole = trials.n_windows == 1 && !raw;
+  return {is_whole ? std::move(best.sample) : trials.encode_all(best.weights), best.weights.chooses};
 }
 
 uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> given,
                             int bits, bool trained, bool chooses) {
-  std::vector<Position> positions(given.begin(), given.end());
-  const size_t n_windows = windows_for(positions.size());
-  const std::vector<Stencil> sampled = stencils_of_windows(stencils, positions.size(), n_windows);
+  Trials trials(topology, stencils, given, bits, trained, true);
   const PositionWeights weights{.exact = chooses, .chooses = chooses};
-  const size_t n_bytes =
-      encode_windows(topology, stencils, sampled, positions, n_windows, weights, bits, trained).size();
-  return estimate_of(n_bytes, weights, positions.size(), sampled.size());
+  return trials.bits_of(trials.encode_sample(weights), weights);
 }
 
 Result<std::vector<Position>> decode_positions(std::span<const uint8_t> bytes, const Topology& topology,

@@ -15,13 +15,13 @@ namespace pac::geomcodec {
 using Position = std::array<uint16_t, 3>;
 
 // stencils: of `topology`. trained: models start as training left them. positions: of the points in coded order, then
-// of the isolated vertices.
+// of the isolated vertices. codes_all: whatever may pay is coded, else most of it only estimated (size_estimator.h).
 struct PositionSection {
   std::vector<uint8_t> bytes;
   bool chooses = false;  // residuals choose what they start from: the stream's version has to say so
 };
 PositionSection encode_positions(const Topology& topology, const Stencils& stencils,
-                                 std::span<const Position> positions, int bits, bool trained);
+                                 std::span<const Position> positions, int bits, bool trained, bool codes_all);
 // About how many bits all positions take, from a sample, with no shares: residuals start from the prediction, or
 // choose.
 uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> positions,

@@ -82,7 +82,7 @@ struct Division {
 
 class RangeEncoder {
  public:
-  static constexpr bool kDecodes = false, kTables = false;
+  static constexpr bool kDecodes = false, kTables = false, kEstimates = false;
 
   uint32_t bit(AdaptiveBit& model, uint32_t bit) {
     narrow(model.probability_of_one, bit);
@@ -152,7 +152,7 @@ class RangeEncoder {
 // Sticky: past the end it reads zeros; failed() tells once more of them were needed than any encoder leaves out.
 class RangeDecoder {
  public:
-  static constexpr bool kDecodes = true, kTables = false;
+  static constexpr bool kDecodes = true, kTables = false, kEstimates = false;
 
   explicit RangeDecoder(std::span<const uint8_t> bytes) : data_(bytes.data()), size_(bytes.size()) {
     code_ = uint64_t{next_word()} << 32;
