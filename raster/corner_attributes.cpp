@@ -99,7 +99,8 @@ struct LitPoint {
   const Vertex* vertex;
 };
 
-void light_corners(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points, float (*out)[6]) {
+void light_corners(const Surface& surface, const TileKernels& kernels, int n, const LitPoint* points,
+                   float (*out)[kLitFloats]) {
   LitRows rows;
   for (int i = 0; i < (n + 7) / 8 * 8; ++i) {
     const LitPoint& point = points[std::min(i, n - 1)];
@@ -115,15 +116,8 @@ void light_corners(const Surface& surface, const TileKernels& kernels, int n, co
 }
 
 void set_lit_colors(const Surface& surface, int corner, const float* lit, CornerAttributes& out) {
-  float* value = out.value[corner];
-  for (int c = 0; c < 3; ++c) {
-    if (surface.layout.specular >= 0) {
-      value[c] = lit[c];
-      value[surface.layout.specular + c] = lit[c + 3];
-    } else {
-      value[c] = lit[c] + lit[c + 3];
-    }
-  }
+  std::copy_n(lit, 3, out.value[corner]);
+  if (surface.layout.specular >= 0) std::copy_n(lit + kLitSpecular, 3, out.value[corner] + surface.layout.specular);
 }
 
 void set_vertex_colors(const Surface& surface, const Vertex* const vertices[3], CornerAttributes& out) {
@@ -144,7 +138,7 @@ FaceNormal unit_normal(const FaceNormal& normal) {
   return {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
 }
 
-void light_points(const Surface& surface, const TileKernels& kernels, int n, LitRows& rows, float (*out)[6]) {
+void light_points(const Surface& surface, const TileKernels& kernels, int n, LitRows& rows, float (*out)[kLitFloats]) {
   const int n_groups = (n + 7) / 8;
   alignas(32) float visibility[kMaxKernelLights + 1][kBatchLanes];
   if (surface.shadows != nullptr) {
@@ -154,12 +148,14 @@ void light_points(const Surface& surface, const TileKernels& kernels, int n, Lit
     cast_shadows(*surface.shadows, kernels, surface.lighting, n_groups, masks, {0, surface.shadows->samples.count},
                  rows.normal[0], rows.position[0], visibility[0]);
   }
+  const bool has_specular = surface.lighting.has_specular != 0, apart = surface.layout.specular >= 0;
   kernels.light(surface.lighting, n, rows.normal[0], rows.position[0],
                 surface.shadows != nullptr ? visibility[0] : nullptr, rows.color[0], rows.specular[0]);
   for (int i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c) {
-      out[i][c] = rows.color[c][i];
-      out[i][c + 3] = surface.lighting.has_specular != 0 ? rows.specular[c][i] : 0.0f;
+      const float color = rows.color[c][i], specular = has_specular ? rows.specular[c][i] : 0.0f;
+      out[i][c] = apart ? color : color + specular;
+      if (apart) out[i][kLitSpecular + c] = specular;
     }
 }
 
@@ -178,7 +174,7 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
     return;
   }
   CornerNormal normals[3];
-  float lit[3][6];
+  float lit[3][kLitFloats];
   if (surface.lit == Surface::Lit::per_face) {
     const float side = front ? 1.0f : -1.0f;
     const FaceNormal unit = unit_normal(face);
@@ -208,8 +204,7 @@ void corner_attributes(const Surface& surface, const TileKernels& kernels, const
   }
 }
 
-bool write_normal_record(const Vertex* const vertices[3], const int order[3], float record[27]) {
-  const Vertex* const v[3] = {vertices[order[0]], vertices[order[1]], vertices[order[2]]};
+bool write_normal_record(const Vertex* const v[3], float record[27]) {
   bool bounded = true;
   for (int c = 0; c < 3; ++c) {
     const auto color = static_cast<float>(v[0]->color[c]);

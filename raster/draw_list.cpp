@@ -121,7 +121,7 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
   chunk.attributes.reset();
   chunk.pairs.clear();
   chunk.n_pending = 0;
-  chunk.drop_back = 0;
+  chunk.drop_back = chunk.whole = 0;
   chunk.normal_of = UINT32_MAX;
   chunk.stats = {};
   chunk.result = {};
@@ -155,7 +155,7 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
   const uint32_t *const indices = mesh.indices.data(), *const outcodes = outcodes_.data();
   const ScreenVertex* const screen = screen_.data();
   const std::vector<Surface>& surfaces = *input.surfaces[0];
-  uint32_t material = UINT32_MAX, drop_back = 0, dropped = chunk.drop_back;
+  uint32_t material = UINT32_MAX, drop_back = 0, dropped = chunk.drop_back, whole = chunk.whole;
   int n = chunk.n_pending;
   for (; face < last_face; ++face) {
     const Face& at = faces[face];
@@ -168,20 +168,23 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
     if ((any & kOutClip) != 0) break;
     if (at.material != material) drop_back = surfaces[at.material].drop_back_faces ? 1 : 0;
     material = at.material;
-    chunk.pending[n] = {static_cast<uint32_t>(face), {v0, v1, v2}};
+    chunk.pending[n] = {{v0, v1, v2}, static_cast<uint32_t>(face), material};
     chunk.corners[n][0] = screen + v0;
     chunk.corners[n][1] = screen + v1;
     chunk.corners[n][2] = screen + v2;
     dropped |= drop_back << n;
+    whole |= 1u << n;
     if (++n < kSetupLanes) continue;
     chunk.n_pending = n;
     chunk.drop_back = dropped;
+    chunk.whole = whole;
     flush(input, chunk);
     n = 0;
-    dropped = 0;
+    dropped = whole = 0;
   }
   chunk.n_pending = n;
   chunk.drop_back = dropped;
+  chunk.whole = whole;
   chunk.stats.triangles_submitted += face - given;
   return face;
 }
@@ -228,7 +231,8 @@ inline void DrawList::process_triangle(const FrameInput& input, uint32_t face_nu
     return;
   }
   if ((all & kOutView) != 0) return;
-  const PendingTriangle triangle{face_number, {vertices[0], vertices[1], vertices[2]}};
+  const Face& face = input.mesh->faces[face_number];
+  const PendingTriangle triangle{{vertices[0], vertices[1], vertices[2]}, face_number, face.material};
   if ((any & kOutClip) != 0) {
     flush(input, chunk);
     process_clipped(input, triangle, any & kOutClip, chunk);
@@ -237,8 +241,9 @@ inline void DrawList::process_triangle(const FrameInput& input, uint32_t face_nu
   const int lane = chunk.n_pending++;
   chunk.pending[lane] = triangle;
   for (int i = 0; i < 3; ++i) chunk.corners[lane][i] = &screen_[vertices[i]];
-  const bool drop_back_faces = (*input.surfaces[0])[input.mesh->faces[face_number].material].drop_back_faces;
+  const bool drop_back_faces = (*input.surfaces[0])[face.material].drop_back_faces;
   chunk.drop_back |= (drop_back_faces ? 1u : 0u) << lane;
+  chunk.whole |= (face.count == 3 ? 1u : 0u) << lane;
   if (chunk.n_pending == kSetupLanes) flush(input, chunk);
 }
 
@@ -253,7 +258,7 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   chunk.stats.triangles_dropped += count_lanes(masks.degenerate);
   if (n_drawn > 0) attach(input, masks, stored, chunk);
   chunk.n_pending = 0;
-  chunk.drop_back = 0;
+  chunk.drop_back = chunk.whole = 0;
 }
 
 void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes,

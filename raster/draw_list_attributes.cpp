@@ -9,10 +9,9 @@
 namespace pac::raster {
 namespace {
 
-// Records of unlit surfaces without other attributes, from the vertices.
-inline void write_color_record(const Surface& surface, const Vertex* const vertices[3], const int order[3],
-                               float record[9]) {
-  const uint8_t* const colors[3] = {vertices[order[0]]->color, vertices[order[1]]->color, vertices[order[2]]->color};
+// Records of unlit surfaces without other attributes, from the vertices in the order of RasterTriangle's corners.
+inline void write_color_record(const Surface& surface, const Vertex* const vertices[3], float record[9]) {
+  const uint8_t* const colors[3] = {vertices[0]->color, vertices[1]->color, vertices[2]->color};
   for (int c = 0; c < 3; ++c) {
     const float a0 = static_cast<float>(colors[0][c]) * surface.mean[c];
     record[3 * c] = a0;
@@ -22,13 +21,12 @@ inline void write_color_record(const Surface& surface, const Vertex* const verti
 }
 
 // Of surfaces lit at corners, from what light_points() gave.
-inline void write_lit_record(const float* const lit[3], const int order[3], float record[9]) {
-  const float *const corner0 = lit[order[0]], *const corner1 = lit[order[1]], *const corner2 = lit[order[2]];
+inline void write_lit_record(const float* corner0, const float* corner1, const float* corner2, float record[9]) {
   for (int c = 0; c < 3; ++c) {
-    const float a0 = corner0[c] + corner0[c + 3];
+    const float a0 = corner0[c];
     record[3 * c] = a0;
-    record[3 * c + 1] = (corner1[c] + corner1[c + 3]) - a0;
-    record[3 * c + 2] = (corner2[c] + corner2[c + 3]) - a0;
+    record[3 * c + 1] = corner1[c] - a0;
+    record[3 * c + 2] = corner2[c] - a0;
   }
 }
 
@@ -54,7 +52,9 @@ void attach_attributes(const FrameInput& input, const Candidate& candidate, cons
     if (!input.wants_attributes) continue;
     if (corners == nullptr && surface.lit == Surface::Lit::no && surface.layout.count == 3) {
       float* record = arena.allocate(9);
-      write_color_record(surface, candidate.vertices, order, record);
+      const Vertex* const vertices[3] = {candidate.vertices[0], candidate.vertices[order[1]],
+                                         candidate.vertices[order[2]]};
+      write_color_record(surface, vertices, record);
       triangle.attributes[r] = record;
       continue;
     }
@@ -112,52 +112,53 @@ uint32_t DrawList::kept_normals(const FrameInput& input, const SetupMasks& masks
     const PendingTriangle& pending = chunk.pending[lane];
     for (int i = 0; i < 3; ++i) vertices[n][i] = input.mesh->vertices[pending.vertices[i]].position;
     front |= (masks.front >> lane & 1) << n;
-    whole |= (input.mesh->faces[pending.face].count == 3 ? 1u : 0u) << n;
+    whole |= (chunk.whole >> lane & 1) << n;
   }
   return whole & input.kernels->front.keeps_normals(n, vertices, front);
 }
 
 // The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
 inline const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending,
-                                           bool front, bool keeps_normals, Arena<float>& arena) const {
-  const Mesh& mesh = *input.mesh;
-  const Face& face = mesh.faces[pending.face];
-  const Surface& surface = (*input.surfaces[rendering])[face.material];
+                                           uint32_t front, bool keeps_normals, Arena<float>& arena) const {
+  const Surface& surface = (*input.surfaces[rendering])[pending.material];
   const bool colors_alone = surface.layout.count == 3;
   const bool by_sample = surface.lit == Surface::Lit::per_sample && surface.layout.count == 9 &&
                          surface.layout.normal == 3 && surface.layout.position == 6;
   if (!colors_alone && !by_sample) return nullptr;
-  const Vertex* const vertices[3] = {&mesh.vertices[pending.vertices[0]], &mesh.vertices[pending.vertices[1]],
-                                     &mesh.vertices[pending.vertices[2]]};
-  const int order[3] = {0, front ? 2 : 1, front ? 1 : 2};
-  if (surface.lit == Surface::Lit::no) {
+  const bool is_lit = surface.lit != Surface::Lit::no;
+  if (is_lit && !keeps_normals) return nullptr;
+  const uint32_t corner0 = pending.vertices[0], corner1 = pending.vertices[1 + front],
+                 corner2 = pending.vertices[2 - front];
+  if (is_lit && colors_alone) {
+    const LitVertices& colors = lit_[rendering];
+    const float *const lit0 = colors.find(corner0, pending.material),
+                       *const lit1 = colors.find(corner1, pending.material),
+                       *const lit2 = colors.find(corner2, pending.material);
+    if (lit0 == nullptr || lit1 == nullptr || lit2 == nullptr) return nullptr;
     float* const record = arena.allocate(9);
-    write_color_record(surface, vertices, order, record);
+    write_lit_record(lit0, lit1, lit2, record);
     return record;
   }
-  if (!keeps_normals) return nullptr;
-  if (by_sample) {
+  const Vertex* const first = input.mesh->vertices.data();
+  const Vertex* const vertices[3] = {first + corner0, first + corner1, first + corner2};
+  if (is_lit) {
     float* const record = arena.allocate(27);
-    return write_normal_record(vertices, order, record) ? record : nullptr;
+    return write_normal_record(vertices, record) ? record : nullptr;
   }
-  const float* lit[3];
-  for (int i = 0; i < 3; ++i) lit[i] = lit_[rendering].find(pending.vertices[i], face.material);
-  if (lit[0] == nullptr || lit[1] == nullptr || lit[2] == nullptr) return nullptr;
   float* const record = arena.allocate(9);
-  write_lit_record(lit, order, record);
+  write_color_record(surface, vertices, record);
   return record;
 }
 
 // What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
 // False: it does, and the triangle is not complete.
-inline bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, bool front,
+inline bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, uint32_t front,
                                    bool keeps_normals, Arena<float>& arena, RasterTriangle& triangle) const {
   if (input.previous_clip != nullptr) return false;
-  const uint32_t material = input.mesh->faces[pending.face].material;
   triangle.id = pending.face + 1;
   for (int r = 0; r < 2; ++r) {
     const bool drawn = input.surfaces[r] != nullptr;
-    triangle.state[r] = drawn ? (*input.surfaces[r])[material].batch : 0;
+    triangle.state[r] = drawn ? (*input.surfaces[r])[pending.material].batch : 0;
     triangle.attributes[r] = nullptr;
     if (!drawn || !input.wants_attributes) continue;
     triangle.attributes[r] = plain_record(input, r, pending, front, keeps_normals, arena);
@@ -174,12 +175,12 @@ void DrawList::attach(const FrameInput& input, const SetupMasks& masks, RasterTr
   for (uint32_t left = masks.drawn; left != 0; left &= left - 1, kept >>= 1) {
     const int lane = std::countr_zero(left);
     const PendingTriangle& triangle = chunk.pending[lane];
-    const bool front = (masks.front >> lane & 1) != 0;
+    const uint32_t front = masks.front >> lane & 1;
     if (attach_plain(input, triangle, front, (kept & 1) != 0, chunk.attributes, *stored)) {
       list_in_tiles(input, *stored++, chunk);
     } else {
       fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);
-      store(input, candidate, nullptr, front, chunk, *stored++);
+      store(input, candidate, nullptr, front != 0, chunk, *stored++);
     }
   }
 }

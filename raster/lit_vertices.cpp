@@ -18,7 +18,7 @@ struct Batch {
   uint32_t vertices[kBatchLanes];
   const float* at[kBatchLanes];
   LitRows rows;
-  float colors[kBatchLanes][6];
+  float colors[kBatchLanes][kLitFloats] = {};
 };
 
 static_assert(sizeof(Vertex) % sizeof(float) == 0 && offsetof(Vertex, position) == 0 &&
@@ -48,12 +48,16 @@ void LitVertices::assign_materials(const Mesh& mesh, const std::vector<Surface>&
 void LitVertices::light_range(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels,
                               const float eye[3], const uint32_t* outcodes, size_t first, size_t last) {
   Batch batch;
+  const auto copy = [this](const float* from, float* to) {
+    std::copy_n(from, kLitSpecular, to);
+    if (stride_ > kLitSpecular) std::copy_n(from + kLitSpecular, kLitFloats - kLitSpecular, to + kLitSpecular);
+  };
   const auto flush = [&] {
     if (batch.count == 0) return;
     LitRows& rows = batch.rows;
     kernels.front.gather_vertices(batch.count, batch.at, rows.normal[0], rows.position[0], rows.color[0]);
     light_points(surfaces[batch.material], kernels.tile, batch.count, rows, batch.colors);
-    for (int i = 0; i < batch.count; ++i) std::copy_n(batch.colors[i], 6, &colors_[6 * size_t{batch.vertices[i]}]);
+    for (int i = 0; i < batch.count; ++i) copy(batch.colors[i], &colors_[stride_ * size_t{batch.vertices[i]}]);
     batch.count = 0;
   };
   for (size_t eight = first; eight < last; eight += 8) {
@@ -86,7 +90,11 @@ void LitVertices::prepare(const Mesh& mesh, const std::vector<Surface>& surfaces
   n_materials_ = surfaces.size();
   assign_materials(mesh, surfaces);
   const size_t n = mesh.vertices.size();
-  if (colors_.size() < 6 * n) colors_.resize(6 * n);
+  const bool apart = std::any_of(surfaces.begin(), surfaces.end(), [](const Surface& surface) {
+    return surface.lit == Surface::Lit::per_corner && surface.layout.specular >= 0;
+  });
+  stride_ = apart ? kLitFloats : kLitSpecular;
+  if (colors_.size() < stride_ * n) colors_.resize(stride_ * n);
   pool.for_each(static_cast<int64_t>((n + kRange - 1) / kRange), [&](int64_t range) {
     const size_t first = static_cast<size_t>(range) * kRange;
     light_range(mesh, surfaces, kernels, lit->lighting.eye, outcodes, first, std::min(first + kRange, n));

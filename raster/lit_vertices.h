@@ -19,9 +19,10 @@ class LitVertices {
   void prepare(const Mesh& mesh, const std::vector<Surface>& surfaces, const Kernels& kernels, const uint32_t* outcodes,
                ThreadPool& pool);
 
-  // Color and specular color (six floats) of a vertex under a material by its own normal, or null: light it there.
+  // What light_points() gives a vertex under a material by its own normal, or null: light it there. Four floats are
+  // readable.
   const float* find(uint32_t vertex, uint32_t material) const {
-    return material < n_materials_ && materials_[vertex] == material ? &colors_[6 * size_t{vertex}] : nullptr;
+    return material < n_materials_ && materials_[vertex] == material ? &colors_[stride_ * size_t{vertex}] : nullptr;
   }
 
  private:
@@ -31,7 +32,8 @@ class LitVertices {
 
   size_t n_materials_ = 0;           // 0: nothing prepared
   std::vector<uint32_t> materials_;  // a vertex; kNone = not lit
-  std::vector<float> colors_;        // six a vertex
+  size_t stride_ = 0;                // floats a vertex: kLitSpecular where no material keeps specular color apart
+  std::vector<float> colors_;
 };
 
 }  // namespace pac::raster
