@@ -153,7 +153,6 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
   const size_t last_first = mesh.indices.size() - 3;
   const Face* const faces = mesh.faces.data();
   const uint32_t *const indices = mesh.indices.data(), *const outcodes = outcodes_.data();
-  const ScreenVertex* const screen = screen_.data();
   const std::vector<Surface>& surfaces = *input.surfaces[0];
   uint32_t material = UINT32_MAX, drop_back = 0, dropped = chunk.drop_back, whole = chunk.whole;
   int n = chunk.n_pending;
@@ -169,9 +168,6 @@ size_t DrawList::append_plain(const FrameInput& input, size_t face, size_t last_
     if (at.material != material) drop_back = surfaces[at.material].drop_back_faces ? 1 : 0;
     material = at.material;
     chunk.pending[n] = {{v0, v1, v2}, static_cast<uint32_t>(face), material};
-    chunk.corners[n][0] = screen + v0;
-    chunk.corners[n][1] = screen + v1;
-    chunk.corners[n][2] = screen + v2;
     dropped |= drop_back << n;
     whole |= 1u << n;
     if (++n < kSetupLanes) continue;
@@ -232,7 +228,7 @@ inline void DrawList::process_triangle(const FrameInput& input, uint32_t face_nu
   }
   if ((all & kOutView) != 0) return;
   const Face& face = input.mesh->faces[face_number];
-  const PendingTriangle triangle{{vertices[0], vertices[1], vertices[2]}, face_number, face.material};
+  const MeshTriangle triangle{{vertices[0], vertices[1], vertices[2]}, face_number, face.material};
   if ((any & kOutClip) != 0) {
     flush(input, chunk);
     process_clipped(input, triangle, any & kOutClip, chunk);
@@ -240,7 +236,6 @@ inline void DrawList::process_triangle(const FrameInput& input, uint32_t face_nu
   }
   const int lane = chunk.n_pending++;
   chunk.pending[lane] = triangle;
-  for (int i = 0; i < 3; ++i) chunk.corners[lane][i] = &screen_[vertices[i]];
   const bool drop_back_faces = (*input.surfaces[0])[face.material].drop_back_faces;
   chunk.drop_back |= (drop_back_faces ? 1u : 0u) << lane;
   chunk.whole |= (face.count == 3 ? 1u : 0u) << lane;
@@ -252,7 +247,8 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   const int n = chunk.n_pending;
   if (n == 0) return;
   RasterTriangle* stored = chunk.triangles.allocate(kSetupLanes);
-  const SetupMasks masks = input.kernels->front.setup_triangles(rules_, n, chunk.corners, chunk.drop_back, stored);
+  const SetupMasks masks =
+      input.kernels->front.setup_triangles(rules_, n, chunk.pending, screen_.data(), chunk.drop_back, stored);
   const auto n_drawn = count_lanes(masks.drawn);
   chunk.triangles.release(kSetupLanes - n_drawn);
   chunk.stats.triangles_dropped += count_lanes(masks.degenerate);
@@ -261,8 +257,7 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   chunk.drop_back = chunk.whole = 0;
 }
 
-void DrawList::process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes,
-                               Chunk& chunk) {
+void DrawList::process_clipped(const FrameInput& input, const MeshTriangle& triangle, uint32_t planes, Chunk& chunk) {
   const Mesh& mesh = *input.mesh;
   TransformedVertex vertices[3];
   const TransformedVertex* corners[3];

@@ -84,19 +84,13 @@ class DrawList {
     uint32_t tile;
     const RasterTriangle* triangle;
   };
-  // A triangle wholly inside the clipping planes that waits for seven others.
-  struct PendingTriangle {
-    uint32_t vertices[3];
-    uint32_t face, material;
-  };
   // A contiguous part of the faces, worked on by one thread.
   struct Chunk {
     Arena<RasterTriangle> triangles;
     Arena<float> attributes;
-    PendingTriangle pending[kSetupLanes];
-    const ScreenVertex* corners[kSetupLanes][3];  // of them
-    uint32_t drop_back = 0;                       // bit k: the back of pending[k] is not drawn
-    uint32_t whole = 0;                           // bit k: pending[k] is its face
+    MeshTriangle pending[kSetupLanes];  // wholly inside the clipping planes, waiting until there are eight
+    uint32_t drop_back = 0;             // bit k: the back of pending[k] is not drawn
+    uint32_t whole = 0;                 // bit k: pending[k] is its face
     int n_pending = 0;
     std::vector<TilePair> pairs;              // in order
     std::vector<uint32_t> bin_start;          // per tile, and one past the end: where its part of `bins` starts
@@ -112,7 +106,7 @@ class DrawList {
   size_t append_plain(const FrameInput& input, size_t face, size_t last_face, Chunk& chunk) const;
   void process_polygon(const FrameInput& input, uint32_t face_number, Chunk& chunk);
   void process_triangle(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk);
-  void process_clipped(const FrameInput& input, const PendingTriangle& triangle, uint32_t planes, Chunk& chunk);
+  void process_clipped(const FrameInput& input, const MeshTriangle& triangle, uint32_t planes, Chunk& chunk);
   void flush(const FrameInput& input, Chunk& chunk) const;
   void attach(const FrameInput& input, const SetupMasks& masks, RasterTriangle* stored, Chunk& chunk) const;
   void store(const FrameInput& input, const Candidate& candidate, const ClipVertex* const* corners, bool front,
@@ -121,9 +115,9 @@ class DrawList {
   void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
                       Candidate& out) const;
   static uint32_t kept_normals(const FrameInput& input, const SetupMasks& masks, const Chunk& chunk);
-  bool attach_plain(const FrameInput& input, const PendingTriangle& pending, uint32_t front, bool keeps_normals,
+  bool attach_plain(const FrameInput& input, const MeshTriangle& pending, uint32_t front, bool keeps_normals,
                     Arena<float>& arena, RasterTriangle& triangle) const;
-  const float* plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending, uint32_t front,
+  const float* plain_record(const FrameInput& input, int rendering, const MeshTriangle& pending, uint32_t front,
                             bool keeps_normals, Arena<float>& arena) const;
   void list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const;
   void fill_bins(Chunk& chunk) const;

@@ -99,26 +99,18 @@ const FaceNormal& DrawList::normal_of(const Mesh& mesh, uint32_t face_number, Ch
   return chunk.normal;
 }
 
-// Bit i: own normals light all corners of the i-th drawn triangle of those that wait, as corner_attributes() would find
-// with the normal of the face, which the triangle is alone. Bits that are 0 say nothing.
+// Bit k: own normals light all corners of the k-th triangle of those that wait, if it is drawn, as corner_attributes()
+// would find with the normal of the face, which the triangle is alone. Bits that are 0 say nothing.
 uint32_t DrawList::kept_normals(const FrameInput& input, const SetupMasks& masks, const Chunk& chunk) {
-  if (!input.wants_attributes || !input.wants_normals || input.previous_clip != nullptr || masks.drawn == 0) return 0;
+  if (!input.wants_attributes || !input.wants_normals || input.previous_clip != nullptr) return 0;
   static_assert(offsetof(Vertex, normal) == 3 * sizeof(float) && sizeof(Vertex) >= 8 * sizeof(float));
-  const float* vertices[kSetupLanes][3];
-  uint32_t front = 0, whole = 0;
-  int n = 0;
-  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, ++n) {
-    const int lane = std::countr_zero(left);
-    const PendingTriangle& pending = chunk.pending[lane];
-    for (int i = 0; i < 3; ++i) vertices[n][i] = input.mesh->vertices[pending.vertices[i]].position;
-    front |= (masks.front >> lane & 1) << n;
-    whole |= (chunk.whole >> lane & 1) << n;
-  }
-  return whole & input.kernels->front.keeps_normals(n, vertices, front);
+  return input.kernels->front.keeps_normals(masks.drawn & chunk.whole, chunk.pending,
+                                            input.mesh->vertices.data()->position, sizeof(Vertex) / sizeof(float),
+                                            masks.front);
 }
 
 // The attributes of a triangle in one rendering, or null where attach_attributes() is needed for them.
-inline const float* DrawList::plain_record(const FrameInput& input, int rendering, const PendingTriangle& pending,
+inline const float* DrawList::plain_record(const FrameInput& input, int rendering, const MeshTriangle& pending,
                                            uint32_t front, bool keeps_normals, Arena<float>& arena) const {
   const Surface& surface = (*input.surfaces[rendering])[pending.material];
   const bool colors_alone = surface.layout.count == 3;
@@ -152,7 +144,7 @@ inline const float* DrawList::plain_record(const FrameInput& input, int renderin
 
 // What store() would do for a triangle that is not clipped, where that takes neither a face's normal nor lighting.
 // False: it does, and the triangle is not complete.
-inline bool DrawList::attach_plain(const FrameInput& input, const PendingTriangle& pending, uint32_t front,
+inline bool DrawList::attach_plain(const FrameInput& input, const MeshTriangle& pending, uint32_t front,
                                    bool keeps_normals, Arena<float>& arena, RasterTriangle& triangle) const {
   if (input.previous_clip != nullptr) return false;
   triangle.id = pending.face + 1;
@@ -171,12 +163,12 @@ inline bool DrawList::attach_plain(const FrameInput& input, const PendingTriangl
 // Attributes of the drawn triangles of those that wait, and their tiles.
 void DrawList::attach(const FrameInput& input, const SetupMasks& masks, RasterTriangle* stored, Chunk& chunk) const {
   Candidate candidate;
-  uint32_t kept = kept_normals(input, masks, chunk);
-  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, kept >>= 1) {
+  const uint32_t kept = kept_normals(input, masks, chunk);
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
-    const PendingTriangle& triangle = chunk.pending[lane];
+    const MeshTriangle& triangle = chunk.pending[lane];
     const uint32_t front = masks.front >> lane & 1;
-    if (attach_plain(input, triangle, front, (kept & 1) != 0, chunk.attributes, *stored)) {
+    if (attach_plain(input, triangle, front, (kept >> lane & 1) != 0, chunk.attributes, *stored)) {
       list_in_tiles(input, *stored++, chunk);
     } else {
       fill_candidate(input, triangle.face, triangle.vertices, chunk, candidate);

@@ -61,15 +61,14 @@ TEST_CASE(
 
 struct Group {
   ScreenVertex vertices[kSetupLanes][3];
-  const ScreenVertex* corners[kSetupLanes][3];
+  MeshTriangle triangles[kSetupLanes];
 
   explicit Group(Random& random) {
     const bool small = random.bits() % 4 != 0;  // one large triangle and the group goes another way
     for (int k = 0; k < kSetupLanes; ++k)
       for (int first = 1; first == 1 || (small && is_wide(k)); first = 0) random_corners(random, vertices[k]);
     if (random.bits() % 3 == 0) vertices[2][1] = vertices[2][random.bits() % 2 == 0 ? 0 : 2];  // no area
-    for (int k = 0; k < kSetupLanes; ++k)
-      for (int i = 0; i < 3; ++i) corners[k][i] = &vertices[k][i];
+    for (uint32_t k = 0; k < kSetupLanes; ++k) triangles[k] = {{3 * k, 3 * k + 1, 3 * k + 2}, 0, 0};
   }
   bool is_wide(int k) const {
     for (int i = 0; i < 3; ++i)
@@ -110,8 +109,9 @@ TEST_CASE(
       const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
       const uint32_t drop_back = random.bits() & 0xFF & ((1u << n) - 1);
       RasterTriangle expected[kSetupLanes] = {}, actual[kSetupLanes] = {};
-      const SetupMasks a = scalar.front.setup_triangles(rules, n, group.corners, drop_back, expected);
-      const SetupMasks b = table.front.setup_triangles(rules, n, group.corners, drop_back, actual);
+      const SetupMasks a =
+          scalar.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, expected);
+      const SetupMasks b = table.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, actual);
       REQUIRE(a.drawn == b.drawn);
       REQUIRE(a.front == b.front);
       REQUIRE(a.degenerate == b.degenerate);
@@ -139,13 +139,13 @@ bool is_strictly_inside(const ScreenVertex (&v)[3], int64_t x, int64_t y) {
 // Triangles with normals around theirs, some almost in their planes, some too large, too small or not numbers.
 struct NormalTriangles {
   float vertices[kSetupLanes][3][8];
-  const float* at[kSetupLanes][3];
+  MeshTriangle triangles[kSetupLanes];
 
   explicit NormalTriangles(Random& random) {
     for (int k = 0; k < kSetupLanes; ++k) {
       const float scale = random.bits() % 8 == 0 ? 1e-20f : random.bits() % 8 == 0 ? 1e18f : 10.0f;
       for (int i = 0; i < 3; ++i) {
-        at[k][i] = vertices[k][i];
+        triangles[k].vertices[i] = static_cast<uint32_t>(3 * k + i);
         for (int c = 0; c < 8; ++c) vertices[k][i][c] = random.between(-1, 1) * (c < 3 ? scale : 1.0f);
       }
       if (random.bits() % 4 != 0) flatten(random, k);
@@ -170,12 +170,12 @@ TEST_CASE("keeps_normals: every instruction set says what the scalar one says, a
     Random random(77);
     for (int round = 0; round < 400; ++round) {
       const NormalTriangles input(random);
-      const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
-      const uint32_t front = random.bits() & 0xFF;
-      const uint32_t kept = scalar.front.keeps_normals(n, input.at, front);
-      REQUIRE(kept == table.front.keeps_normals(n, input.at, front));
-      REQUIRE(kept < 1u << n);
-      for (int k = 0; k < n; ++k) {
+      const uint32_t asked = random.bits() & 0xFF, front = random.bits() & 0xFF;
+      const float* const vertices = input.vertices[0][0];
+      const uint32_t kept = scalar.front.keeps_normals(asked, input.triangles, vertices, 8, front);
+      REQUIRE(kept == table.front.keeps_normals(asked, input.triangles, vertices, 8, front));
+      REQUIRE((kept & ~asked) == 0);
+      for (int k = 0; k < kSetupLanes; ++k) {
         if ((kept >> k & 1) == 0) continue;
         ++kept_count;
         const auto at = [&](int i, int c) { return static_cast<long double>(input.vertices[k][i][c]); };
@@ -243,7 +243,8 @@ TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that
         }
       const SetupRules rules{64, 64, 128, 128, 128, 128};
       RasterTriangle out[kSetupLanes] = {};
-      const SetupMasks masks = kernels_for(isa)->front.setup_triangles(rules, kSetupLanes, group.corners, 0, out);
+      const SetupMasks masks =
+          kernels_for(isa)->front.setup_triangles(rules, kSetupLanes, group.triangles, group.vertices[0], 0, out);
       const RasterTriangle* drawn = out;
       for (int k = 0; k < kSetupLanes; ++k) {
         const bool is_drawn = (masks.drawn >> k & 1) != 0;

@@ -51,6 +51,13 @@ struct SetupRules {
 
 constexpr int kSetupLanes = 8;
 
+// A triangle of a mesh: the numbers of its corners among the vertices, of its face and of the face's material. The
+// kernels read the corners.
+struct MeshTriangle {
+  uint32_t vertices[3];
+  uint32_t face, material;
+};
+
 // Planar triangles: width and height together are at least so many 1/256 pixel, as planes do not pay for fewer pixels,
 // and area2 times the least of the corners' w is at least 1 / kPlanarRatio of their product.
 constexpr float kSmallestPlanar = 8 * 256, kPlanarRatio = 128;
@@ -68,18 +75,20 @@ struct FrontKernels {
   void (*transform_vertices)(const ScreenTransform& transform, const float* positions, size_t stride, int n,
                              ScreenVertex* screen, uint32_t* outcodes);
 
-  // Sets up n <= kSetupLanes triangles: all fields of RasterTriangle but id, state and attributes. Not drawn are those
-  // without area, those in `drop_back` (bits) that are clockwise on the screen, and those that no sample can see: whose
-  // bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels none of whose samples is inside; those
-  // that have some of such samples inside say which in `covered`.
-  // `out`: room for n; the drawn ones, in order.
-  SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const ScreenVertex* const (*corners)[3],
-                                uint32_t drop_back, RasterTriangle* out);
+  // Sets up n <= kSetupLanes triangles of the vertices on the screen: all fields of RasterTriangle but id, state and
+  // attributes. Not drawn are those without area, those in `drop_back` (bits) that are clockwise on the screen, and
+  // those that no sample can see: whose bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels
+  // none of whose samples is inside; those that have some of such samples inside say which in `covered`. `out`: room
+  // for n; the drawn ones, in order.
+  SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const MeshTriangle* triangles,
+                                const ScreenVertex* vertices, uint32_t drop_back, RasterTriangle* out);
 
-  // Bit k: the vertices' own normals surely lie on the seen side of triangle k of n <= kSetupLanes, none near its
-  // plane: the side where its corners are counter-clockwise, or the other where bit k of `front` is 0. vertices[k][i]:
-  // three floats of position, three of a normal of any length, and two more that are readable.
-  uint32_t (*keeps_normals)(int n, const float* const (*vertices)[3], uint32_t front);
+  // Bit k, for those of kSetupLanes triangles whose bit is in `asked`, 0 for others: the vertices' own normals surely
+  // lie on the seen side of triangle k, none near its plane: the side where its corners are counter-clockwise, or the
+  // other where bit k of `front` is 0. Vertex i is at vertices + i * stride: three floats of position, three of a
+  // normal of any length, and two more that are readable.
+  uint32_t (*keeps_normals)(uint32_t asked, const MeshTriangle* triangles, const float* vertices, size_t stride,
+                            uint32_t front);
 
   // Vertices to be lit by their own normals as they are. Vertex i is at vertices + i * stride: three floats of
   // position, three of the normal and two more that are readable. Bit k of n <= 8: no component of the normal is beyond

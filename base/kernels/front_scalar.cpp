@@ -45,9 +45,15 @@ bool keeps_normals_of(const float* const vertices[3], bool front) {
   return all;
 }
 
-uint32_t keeps_normals(int n, const float* const (*vertices)[3], uint32_t front) {
+uint32_t keeps_normals(uint32_t asked, const MeshTriangle* triangles, const float* vertices, size_t stride,
+                       uint32_t front) {
   uint32_t kept = 0;
-  for (int k = 0; k < n; ++k) kept |= (keeps_normals_of(vertices[k], (front >> k & 1) != 0) ? 1u : 0u) << k;
+  for (int k = 0; k < kSetupLanes; ++k) {
+    if ((asked >> k & 1) == 0) continue;
+    const float* corners[3];
+    for (int i = 0; i < 3; ++i) corners[i] = vertices + stride * triangles[k].vertices[i];
+    kept |= (keeps_normals_of(corners, (front >> k & 1) != 0) ? 1u : 0u) << k;
+  }
   return kept;
 }
 
