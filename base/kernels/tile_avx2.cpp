@@ -185,14 +185,20 @@ inline void transpose_halves(const __m256 in[4], __m256 out[4]) {
   out[2] = _mm256_shuffle_ps(t1, t3, 0x44);
   out[3] = _mm256_shuffle_ps(t1, t3, 0xEE);
 }
+// Written out: compilers keep what loops store into arrays of structures in memory.
 template <int kFrom = 0>
 [[gnu::always_inline]] inline void load_columns(const float* const at[8], F8 rows[4]) {
-  __m256 in[4], out[4];
-  for (int k = 0; k < 4; ++k)
-    in[k] =
-        _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[k] + kFrom)), _mm_loadu_ps(at[k + 4] + kFrom), 1);
+  const auto pair = [at](int k) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at[k] + kFrom)), _mm_loadu_ps(at[k + 4] + kFrom),
+                                1);
+  };
+  const __m256 in[4] = {pair(0), pair(1), pair(2), pair(3)};
+  __m256 out[4];
   transpose_halves(in, out);
-  for (int k = 0; k < 4; ++k) rows[k].v = out[k];
+  rows[0].v = out[0];
+  rows[1].v = out[1];
+  rows[2].v = out[2];
+  rows[3].v = out[3];
 }
 template <int kFrom = 0>
 [[gnu::always_inline]] inline void store_columns(float* const at[8], const F8 rows[4]) {
