@@ -247,8 +247,8 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   const int n = chunk.n_pending;
   if (n == 0) return;
   RasterTriangle* stored = chunk.triangles.allocate(kSetupLanes);
-  const SetupMasks masks =
-      input.kernels->front.setup_triangles(rules_, n, chunk.pending, screen_.data(), chunk.drop_back, stored);
+  SetupMasks masks;
+  input.kernels->front.setup_triangles(rules_, n, chunk.pending, screen_.data(), chunk.drop_back, stored, masks);
   const auto n_drawn = count_lanes(masks.drawn);
   chunk.triangles.release(kSetupLanes - n_drawn);
   chunk.stats.triangles_dropped += count_lanes(masks.degenerate);

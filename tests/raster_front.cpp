@@ -109,9 +109,9 @@ TEST_CASE(
       const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
       const uint32_t drop_back = random.bits() & 0xFF & ((1u << n) - 1);
       RasterTriangle expected[kSetupLanes] = {}, actual[kSetupLanes] = {};
-      const SetupMasks a =
-          scalar.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, expected);
-      const SetupMasks b = table.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, actual);
+      SetupMasks a, b;
+      scalar.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, expected, a);
+      table.front.setup_triangles(rules, n, group.triangles, group.vertices[0], drop_back, actual, b);
       REQUIRE(a.drawn == b.drawn);
       REQUIRE(a.front == b.front);
       REQUIRE(a.degenerate == b.degenerate);
@@ -243,8 +243,8 @@ TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that
         }
       const SetupRules rules{64, 64, 128, 128, 128, 128};
       RasterTriangle out[kSetupLanes] = {};
-      const SetupMasks masks =
-          kernels_for(isa)->front.setup_triangles(rules, kSetupLanes, group.triangles, group.vertices[0], 0, out);
+      SetupMasks masks;
+      kernels_for(isa)->front.setup_triangles(rules, kSetupLanes, group.triangles, group.vertices[0], 0, out, masks);
       const RasterTriangle* drawn = out;
       for (int k = 0; k < kSetupLanes; ++k) {
         const bool is_drawn = (masks.drawn >> k & 1) != 0;

@@ -62,7 +62,7 @@ struct MeshTriangle {
 // and area2 times the least of the corners' w is at least 1 / kPlanarRatio of their product.
 constexpr float kSmallestPlanar = 8 * 256, kPlanarRatio = 128;
 
-// Bit k: triangle k of the group.
+// Bit k: triangle k of the group. Not a result by value: put into registers, its parts would wait for their stores.
 struct SetupMasks {
   uint32_t drawn;       // set up
   uint32_t front;       // counter-clockwise on the screen: corners 1 and 2 are exchanged
@@ -80,8 +80,8 @@ struct FrontKernels {
   // those that no sample can see: whose bounds hold no pixel, or, where a pixel has one sample, at most 2 x 2 pixels
   // none of whose samples is inside; those that have some of such samples inside say which in `covered`. `out`: room
   // for n; the drawn ones, in order.
-  SetupMasks (*setup_triangles)(const SetupRules& rules, int n, const MeshTriangle* triangles,
-                                const ScreenVertex* vertices, uint32_t drop_back, RasterTriangle* out);
+  void (*setup_triangles)(const SetupRules& rules, int n, const MeshTriangle* triangles, const ScreenVertex* vertices,
+                          uint32_t drop_back, RasterTriangle* out, SetupMasks& masks);
 
   // Bit k, for those of kSetupLanes triangles whose bit is in `asked`, 0 for others: the vertices' own normals surely
   // lie on the seen side of triangle k, none near its plane: the side where its corners are counter-clockwise, or the
