@@ -66,14 +66,16 @@ void one_rendering(benchmark::State& state, const Case& what, Isa isa, int threa
   per_pixel(state);
 }
 
-// H as given, L the same without texture and lit at the corners.
-void high_low_difference(benchmark::State& state, const Case& what, Isa isa, int threads) {
+// H as given, L the same without texture and lit at the corners; of several samples shaded each as stills have it
+// (low_shading_samples 0), or once as video has it (1).
+void high_low_difference(benchmark::State& state, const Case& what, int low_shading_samples, Isa isa, int threads) {
   Renderer renderer = make_renderer(isa, threads);
   const Stage& stage = what.stage();
   RenderQuality low = what.quality;
   low.texture = false;
   low.shading = Shading::gouraud;
   low.lighting = Lighting::local;
+  low.shading_samples = low_shading_samples;
   RgbImage high(kSide, kSide), low_image(kSide, kSide), difference(kSide, kSide);
   for (auto _ : state)
     (void)renderer.render_pair(stage.scene, stage.camera, what.quality, low, {high.view(), {}, {}}, low_image.view(),
@@ -103,8 +105,12 @@ const bool registered = [] {
   for (const Case& what : kCases) {
     const std::string name = "raster/" + std::string(what.name);
     benchmark::RegisterBenchmark((name + "/high_low_difference").c_str(), [&what](auto& state) {
-      high_low_difference(state, what, best_isa(), 1);
+      high_low_difference(state, what, 0, best_isa(), 1);
     })->Unit(benchmark::kMillisecond);
+    if (what.quality.samples > 1)
+      benchmark::RegisterBenchmark((name + "/high_low_once_difference").c_str(), [&what](auto& state) {
+        high_low_difference(state, what, 1, best_isa(), 1);
+      })->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark((name + "/2_threads").c_str(),
                                  [&what](auto& state) { one_rendering(state, what, best_isa(), 2); })
         ->Unit(benchmark::kMillisecond)

@@ -79,8 +79,10 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
   const int shading_samples = input.shading_samples[renderings[0]];
   const int n_groups = list_groups(shading_samples, first_sample, groups);
   if (shading_samples == 0) {
-    for (const int rendering : renderings)
-      shade_each_sample(input, area, rendering, {groups, static_cast<size_t>(n_groups)});
+    const std::span<const ShadingGroup> samples{groups, static_cast<size_t>(n_groups)};
+    if (std::all_of(renderings.begin(), renderings.end(), [&](int r) { return fills_squares(input, r); }))
+      return shade_each_sample(input, area, renderings, samples);
+    for (const int& rendering : renderings) shade_each_sample(input, area, {&rendering, 1}, samples);
     return;
   }
   for (int row = 0; row < area.height; row += kGridRows)
@@ -99,9 +101,10 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
     }
 }
 
-// All samples of the grid, each with a color.
-void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, int rendering,
+// All samples of the grid, each with a color: of one rendering, or of several that fill squares.
+void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, std::span<const int> renderings,
                                     std::span<const ShadingGroup> samples) {
+  const int rendering = renderings[0];
   const bool by_squares = fills_squares(input, rendering);  // each of which shows what is whole
   const auto count = static_cast<int>(input.pattern.size());
   const auto pass = [&](const ShadingGroup& sample) {  // inside of triangles, as groups that are not whole
@@ -114,20 +117,20 @@ void TilePainter::shade_each_sample(const PaintInput& input, const Area& area, i
   for (int row = 0; row < area.height; row += kGridRows) {
     const int n_rows = std::min(kGridRows, area.height - row);
     split_by_sample(area, row, n_rows);
-    uint16_t* const sums = sums_[rendering] + row * kTileSize;
     SampleIds seen[kGridSamples];
     for (size_t s = 0; s < samples.size(); ++s) {
       const SamplePosition first = position(area, samples[s].place);
       seen[s] = {sample_ids_[s], {first.x, first.y + 256 * row}};
     }
     if (by_squares) {
-      add_squares(input, rendering, {seen, samples.size()}, area.width, n_rows, sums);
+      for (const int r : renderings)
+        add_squares(input, r, {seen, samples.size()}, area.width, n_rows, sums_[r] + row * kTileSize);
       continue;
     }
     for (size_t s = 0; s < samples.size(); ++s) {
       ShadePass rows = pass(samples[s]);
       rows.origin = seen[s].origin;
-      shade_ids(input, rows, seen[s].ids, area.width, n_rows, sums);
+      shade_ids(input, rows, seen[s].ids, area.width, n_rows, sums_[rendering] + row * kTileSize);
     }
   }
   put_whole_groups_back();
