@@ -31,7 +31,8 @@ struct Models {
 // The faces of the encoder's mesh by directed edge.
 class EdgeIndex {
  public:
-  EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, uint32_t n_vertices);
+  EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, std::span<const uint8_t> left_out,
+            uint32_t n_vertices);
   // A face that is not taken and has an edge from -> to: the lowest one. Its number and the corner at `from`.
   bool find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corner);
   // The lowest face that is not taken; there must be one.
@@ -56,10 +57,14 @@ class EdgeIndex {
   uint32_t lowest_free_ = 0;
 };
 
-EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, uint32_t n_vertices)
-    : first_(size_t{n_vertices} + 1), taken_(faces.size()) {
+EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> faces, std::span<const uint8_t> left_out,
+                     uint32_t n_vertices)
+    : first_(size_t{n_vertices} + 1), taken_(left_out.begin(), left_out.end()) {
+  taken_.resize(faces.size());
   uint32_t n_edges = 0;
-  for (const Face& face : faces) {
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    if (taken_[f] != 0) continue;
+    const Face& face = faces[f];
     n_edges += face.count;
     for (uint32_t k = 0; k < face.count; ++k) ++first_[indices[face.first + k] + 1];
   }
@@ -68,6 +73,7 @@ EdgeIndex::EdgeIndex(std::span<const uint32_t> indices, std::span<const Face> fa
   free_offset_.assign(n_edges, 0);
   std::vector<uint32_t> end(first_.begin(), first_.end() - 1);
   for (uint32_t f = 0; f < faces.size(); ++f) {
+    if (taken_[f] != 0) continue;
     const uint32_t* corner = indices.data() + faces[f].first;
     const uint32_t count = faces[f].count;
     for (uint32_t k = 0; k < count; ++k) edges_[end[corner[k]]++] = {corner[k + 1 < count ? k + 1 : 0], f, k};
@@ -94,10 +100,11 @@ bool EdgeIndex::find(uint32_t from, uint32_t to, uint32_t& face, uint32_t& corne
 
 // What only the encoder has.
 struct Source {
-  Source(std::span<const uint32_t> mesh_indices, std::span<const Face> mesh_faces, uint32_t n_vertices)
+  Source(std::span<const uint32_t> mesh_indices, std::span<const Face> mesh_faces, std::span<const uint8_t> left_out,
+         uint32_t n_vertices)
       : indices(mesh_indices),
         faces(mesh_faces),
-        edges(mesh_indices, mesh_faces, n_vertices),
+        edges(mesh_indices, mesh_faces, left_out, n_vertices),
         coded_vertex(n_vertices, kNone) {
     order.vertex.reserve(n_vertices);
     order.face.reserve(mesh_faces.size());
@@ -597,17 +604,19 @@ Result<Topology> decode_walk(Coder& coder, const ConnectivityHeader& header, uin
 }  // namespace
 
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      uint32_t n_vertices, bool by_tables) {
+                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool by_tables) {
   ConnectivityHeader header;
-  header.n_faces = static_cast<uint32_t>(faces.size());
   std::vector<uint8_t> used(n_vertices);
-  for (const Face& face : faces) {
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    if (!degenerate.empty() && degenerate[f] != 0) continue;
+    const Face& face = faces[f];
+    ++header.n_faces;
     header.n_corners += face.count;
     for (uint32_t k = 0; k < face.count; ++k) used[indices[face.first + k]] = 1;
   }
   header.n_vertices = static_cast<uint32_t>(std::count(used.begin(), used.end(), uint8_t{1}));
 
-  Source source(indices, faces, n_vertices);
+  Source source(indices, faces, degenerate, n_vertices);
   if (by_tables) {
     TableEncoder coder(kWalkContexts);
     return encode_walk(coder, header, source);

@@ -22,13 +22,21 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
+enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2 };
+
 // Version 4 is there for tables: without any it would be version 3. Version 5 says how positions are coded that tables
-// do not code.
-void parse_tables(ByteReader& reader, Header& header) {
+// do not code. Version 6 is there for degenerate faces and tells both.
+void parse_tables(ByteReader& reader, uint8_t version, Header& header) {
   constexpr uint32_t kMayBe =
       1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
   header.tables = reader.u8();
-  if ((header.tables == 0 && !header.chooses) || (header.by_tables(kPositions) && header.chooses) ||
+  if (version == kVersionWithDegenerate) {
+    const uint8_t features = reader.u8();
+    if ((features & kHasDegenerate) == 0 || (features & ~(kHasDegenerate | kChooses)) != 0)
+      reader.fail(Error::corrupt, "features are unknown, or faces are not degenerate");
+    header.chooses = (features & kChooses) != 0;
+  }
+  if ((header.tables == 0 && version == kVersionWithTables) || (header.by_tables(kPositions) && header.chooses) ||
       (header.tables & ~kMayBe) != 0)
     reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
 }
@@ -70,12 +78,17 @@ void parse_attributes(ByteReader& reader, uint8_t flags, Header& header) {
     reader.fail(Error::corrupt, "grid of the texture is not finite");
 }
 
-void parse_counts(ByteReader& reader, Header& header) {
+void parse_counts(ByteReader& reader, uint8_t version, Header& header) {
   header.n_used_vertices = reader.count();
   header.n_split_vertices = reader.count();
   header.n_isolated_vertices = reader.count();
   header.n_faces = reader.count();
   const uint64_t n_corners = uint64_t{3} * header.n_faces + reader.count();
+  if (version == kVersionWithDegenerate) {
+    header.n_degenerate = reader.count();
+    if (header.n_degenerate == 0 || header.n_degenerate >= header.n_faces)
+      reader.fail(Error::corrupt, "no face or all of them are degenerate");
+  }
   header.highest_material = reader.varint();
   if (n_corners > kMaxCount || uint64_t{header.n_used_vertices} + header.n_isolated_vertices > kMaxCount ||
       header.n_used_vertices > n_corners || (header.n_faces > 0 && header.n_used_vertices == 0) ||
@@ -145,6 +158,8 @@ bool Header::has(Section section) const {
       return n_faces > 0 && face_bits != 0;
     case kOrder:
       return keeps_order && n_vertices() > 0;
+    case kDegenerate:
+      return n_degenerate > 0;
     case kSections:
       break;
   }
@@ -158,12 +173,14 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
   out.push_back(header.version());
   out.push_back(flags);
   if (header.version() != kVersion) out.push_back(header.tables);
+  if (header.n_degenerate > 0) out.push_back(static_cast<uint8_t>(kHasDegenerate | (header.chooses ? kChooses : 0)));
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
   put_varint(out, header.n_isolated_vertices);
   put_varint(out, header.n_faces);
   put_varint(out, header.n_corners - 3 * header.n_faces);
+  if (header.n_degenerate > 0) put_varint(out, header.n_degenerate);
   put_varint(out, header.highest_material);
   if (header.constant_color) out.insert(out.end(), header.color, header.color + 4);
   for (uint32_t i = 0; i < kSections; ++i)
@@ -177,7 +194,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   for (const uint8_t expected : kMagic)
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
   const uint8_t version = reader.u8();
-  if ((version < kVersion || version > kVersionThatChooses) && reader.ok())
+  if ((version < kVersion || version > kVersionWithDegenerate) && reader.ok())
     return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
@@ -189,11 +206,11 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.constant_color = (flags & kConstantColor) != 0;
   header.trained = (flags & kTrained) != 0;
   header.chooses = version == kVersionThatChooses;
-  if (version != kVersion) parse_tables(reader, header);
+  if (version != kVersion) parse_tables(reader, version, header);
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
   if ((flags & kHasFaceValues) != 0) parse_face_values(reader, header);
-  parse_counts(reader, header);
+  parse_counts(reader, version, header);
   if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
   if (header.chooses && !header.has(kPositions)) reader.fail(Error::corrupt, "positions that are not there choose");
   if (header.constant_color)
@@ -244,8 +261,11 @@ Result<StreamInfo> read_info(std::span<const uint8_t> bytes) {
   info.face_components = header.face_components;
   info.n_points = header.n_points();
   const auto& size = header.section_bytes;
-  info.size = {parsed.header_bytes, size[kConnectivity], size[kSeams],     size[kPositions],  size[kColors],
-               size[kNormals],      size[kTexcoords],    size[kMaterials], size[kFaceValues], size[kOrder]};
+  info.size = {parsed.header_bytes, uint64_t{size[kConnectivity]} + size[kDegenerate],
+               size[kSeams],        size[kPositions],
+               size[kColors],       size[kNormals],
+               size[kTexcoords],    size[kMaterials],
+               size[kFaceValues],   size[kOrder]};
   return info;
 }
 

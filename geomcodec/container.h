@@ -11,7 +11,7 @@
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5;
+inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithDegenerate = 6;
 
 enum Section : uint32_t {
   kConnectivity,
@@ -23,6 +23,7 @@ enum Section : uint32_t {
   kMaterials,
   kFaceValues,
   kOrder,
+  kDegenerate,
   kSections
 };
 
@@ -42,6 +43,7 @@ struct Header {
   uint32_t n_isolated_vertices = 0;        // the rest
   uint32_t n_faces = 0;
   uint32_t n_corners = 0;
+  uint32_t n_degenerate = 0;  // of the faces, those that are degenerate
   uint32_t highest_material = 0;
   uint8_t color[4] = {255, 255, 255, 255};  // with constant_color: everyone's
   std::array<uint32_t, kSections> section_bytes = {};
@@ -50,7 +52,12 @@ struct Header {
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
-  uint8_t version() const { return chooses ? kVersionThatChooses : tables != 0 ? kVersionWithTables : kVersion; }
+  uint8_t version() const {
+    return n_degenerate > 0 ? kVersionWithDegenerate
+           : chooses        ? kVersionThatChooses
+           : tables != 0    ? kVersionWithTables
+                            : kVersion;
+  }
   bool by_tables(Section section) const { return (tables >> section & 1) != 0; }
   // Whether the fields above leave anything for a section to say.
   bool has(Section section) const;

@@ -4,6 +4,7 @@
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
 #include "geomcodec/container.h"
+#include "geomcodec/degenerate_faces.h"
 #include "geomcodec/face_values.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
@@ -166,11 +167,16 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
 
   Topology points;
   if (header.has(kConnectivity)) {
-    auto decoded =
-        decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners},
-                            header.by_tables(kConnectivity), bytes.size());
+    auto decoded = decode_connectivity(
+        stream.section[kConnectivity],
+        {header.n_points(), header.n_faces - header.n_degenerate, header.n_corners - 3 * header.n_degenerate},
+        header.by_tables(kConnectivity), bytes.size());
     if (!decoded) return at(decoded.failure(), stream.section_offset(kConnectivity));
     points = std::move(*decoded);
+  }
+  if (header.has(kDegenerate)) {
+    const auto done = decode_degenerate_faces(stream.section[kDegenerate], header.n_degenerate, points);
+    if (!done) return at(done.failure(), stream.section_offset(kDegenerate));
   }
   auto seams = decode_seams(stream.section[kSeams], points, header.n_used_vertices);
   if (!seams) return at(seams.failure(), stream.section_offset(kSeams));

@@ -4,6 +4,7 @@
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
 #include "geomcodec/container.h"
+#include "geomcodec/degenerate_faces.h"
 #include "geomcodec/face_values.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
@@ -22,7 +23,7 @@ struct Walked {
   Topology points;  // over points, as the walk numbers them
   Seams seams;
   WalkOrder order;  // vertex: all vertices of the mesh, isolated ones last
-  std::vector<uint8_t> connectivity_bytes, seam_bytes;
+  std::vector<uint8_t> connectivity_bytes, degenerate_bytes, seam_bytes;
   std::vector<QuantizedVertex> vertices;
   std::vector<uint32_t> material;
 };
@@ -46,11 +47,15 @@ Walked walk(const QuantizedMesh& mesh, bool by_tables) {
   std::vector<uint32_t> point_indices;
   point_indices.reserve(mesh.indices.size());
   for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
-  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, points.count, by_tables);
-  point_indices = {};  // memory is scarce: 12 bytes a triangle
+  const std::vector<uint8_t> degenerate = find_degenerate_faces(point_indices, mesh.faces, points.count);
+  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, degenerate, points.count, by_tables);
   walked.points = std::move(connectivity.topology);
   walked.connectivity_bytes = std::move(connectivity.bytes);
   walked.order = std::move(connectivity.order);
+  if (!degenerate.empty())
+    walked.degenerate_bytes =
+        encode_degenerate_faces(point_indices, mesh.faces, degenerate, walked.points, walked.order);
+  point_indices = {};  // memory is scarce: 12 bytes a triangle
 
   CodedSeams seams = encode_seams(walked.points, corners_in_order(mesh, walked.order), n_vertices);
   walked.seams = std::move(seams.seams);
@@ -113,6 +118,7 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
   header.n_isolated_vertices = static_cast<uint32_t>(mesh.vertices.size()) - header.n_used_vertices;
   header.n_faces = walked.points.n_faces();
   header.n_corners = walked.points.n_corners();
+  header.n_degenerate = walked.points.n_degenerate_corners / 3;
   for (const uint32_t material : walked.material) header.highest_material = std::max(header.highest_material, material);
   if (header.constant_color && !mesh.vertices.empty())
     std::copy(mesh.vertices[0].color, mesh.vertices[0].color + 4, header.color);
@@ -218,6 +224,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   if (by_tables) choose_tables(walked, options.effort, header);
   Sections sections;
   sections[kConnectivity] = std::move(walked.connectivity_bytes);
+  sections[kDegenerate] = std::move(walked.degenerate_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
   encode_vertices(options, header, walked, sections);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
@@ -232,7 +239,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   std::vector<uint8_t> stream = write_stream(header, sections, header_bytes);
   if (size != nullptr)
     *size = {header_bytes,
-             sections[kConnectivity].size(),
+             sections[kConnectivity].size() + sections[kDegenerate].size(),
              sections[kSeams].size(),
              sections[kPositions].size(),
              sections[kColors].size(),

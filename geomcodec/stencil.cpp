@@ -5,12 +5,12 @@
 namespace pac::geomcodec {
 
 Stencils::Stencils(const Topology& topology) : topology_(topology), first_(size_t{topology.n_vertices} + 1) {
-  for (const uint32_t vertex : topology.corner_vertex) ++first_[vertex + 1];
+  const uint32_t n_corners = topology.n_corners() - topology.n_degenerate_corners;
+  for (uint32_t corner = 0; corner < n_corners; ++corner) ++first_[topology.corner_vertex[corner] + 1];
   for (size_t v = 0; v < topology.n_vertices; ++v) first_[v + 1] += first_[v];
-  around_.resize(topology.n_corners());
+  around_.resize(n_corners);
   std::vector<uint32_t> end(first_.begin(), first_.end() - 1);
-  for (uint32_t corner = 0; corner < topology.n_corners(); ++corner)
-    around_[end[topology.corner_vertex[corner]]++] = corner;
+  for (uint32_t corner = 0; corner < n_corners; ++corner) around_[end[topology.corner_vertex[corner]]++] = corner;
 }
 
 namespace {

@@ -52,7 +52,7 @@ class Stencils {
   // Empty for vertices that no face uses; twists only if wanted.
   void get(uint32_t vertex, bool with_twists, Stencil& stencil) const;
   uint32_t n_vertices() const { return static_cast<uint32_t>(first_.size()) - 1; }
-  // Corners at `vertex`, in their order.
+  // Corners at `vertex`, in their order, but those of degenerate faces.
   const uint32_t* begin(uint32_t vertex) const { return around_.data() + first_[vertex]; }
   const uint32_t* end(uint32_t vertex) const { return around_.data() + first_[vertex + 1]; }
 

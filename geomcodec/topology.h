@@ -18,6 +18,8 @@ struct Topology {
   std::vector<uint32_t> corner_face;  // empty with all_triangles: use face_at()
   std::vector<uint32_t> twin;         // the corner whose edge joins the same vertices the other way round, or kNone
   uint32_t n_vertices = 0;            // those that faces use
+  uint32_t n_degenerate_corners =
+      0;  // the last ones, of degenerate faces (degenerate_faces.h): stencils do not see them
   // Every face has three corners, or four: then numbers alone tell which corners follow.
   bool all_triangles = false, all_quads = false;
 

@@ -54,10 +54,10 @@ TEST_CASE("streams are the same bytes on every platform and compiler") {
       for (const uint8_t byte : by_tables) tables.add(byte);
     }
   }
-  REQUIRE(fnv.hash() == 0x9510f8a5e9c51b7fu);
-  REQUIRE(trained.hash() == 0x0d6805a3df470f67u);
-  REQUIRE(balanced.hash() == 0x7ae019be1f8f3269u);
-  REQUIRE(tables.hash() == 0x0ef74654bb69ff8au);
+  REQUIRE(fnv.hash() == 0xa4bb4e264146d810u);
+  REQUIRE(trained.hash() == 0x5bb65f26d28b3cdeu);
+  REQUIRE(balanced.hash() == 0x4c4c9896d673c9a0u);
+  REQUIRE(tables.hash() == 0xb6f6d17da0d4a3b7u);
 }
 
 TEST_CASE("choosing predictions by estimates costs next to nothing") {
@@ -98,7 +98,7 @@ TEST_CASE("a decoder written from FORMAT.md alone, in another language, reads ou
     }
   }
   REQUIRE(n_files >= 20);
-  REQUIRE(versions == std::set<int>{3, 4, 5});
+  REQUIRE(versions == std::set<int>{3, 4, 5, 6});
   pac::test::require_decoded("pgc_reference_decoder.py", arguments, expected);
 }
 

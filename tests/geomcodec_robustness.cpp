@@ -160,11 +160,23 @@ TEST_CASE("each header field at its limit and one past it") {
     bytes->insert(bytes->begin() + 5, bytes == &choosing_by_tables ? 4 : 0);
     repair_checksum(*bytes, bytes->size());
   }
+  // Version 6 has two more, the second one features, and tells how many faces are degenerate.
+  Bytes unknown_features = header(4, 16, {3, 0, 0, 2, 0, 1, 0, 0, 0, 0, 0}), all_degenerate = unknown_features;
+  for (Bytes* bytes : {&unknown_features, &all_degenerate}) {
+    (*bytes)[3] = 6;
+    const uint8_t more[2] = {0, static_cast<uint8_t>(bytes == &all_degenerate ? 1 : 2)};
+    bytes->insert(bytes->begin() + 5, more, more + 2);
+  }
+  all_degenerate[13] = 2;
+  repair_checksum(unknown_features, unknown_features.size());
+  repair_checksum(all_degenerate, all_degenerate.size());
   const uint64_t top = 0x7FFFFFFF;
   const Case cases[] = {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
       {"choosing without a vertex", choosing_nothing, Error::corrupt, "positions that are not there choose"},
+      {"unknown features", unknown_features, Error::corrupt, "features are unknown, or faces are not degenerate"},
+      {"all faces degenerate", all_degenerate, Error::corrupt, "no face or all of them are degenerate"},
       {"choosing by tables", choosing_by_tables, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,
        "values of faces are not 1..4 of 1..16 bits"},

@@ -295,10 +295,14 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] in (3, 4, 5)
+        assert b[:3] == b"PGC" and b[3] in (3, 4, 5, 6)
         self.flags, self.at, self.b = b[4], 5, b
         self.chooses = b[3] == 5
         self.tables = self.byte() if b[3] > 3 else 0
+        if b[3] == 6:
+            features = self.byte()
+            assert features in (1, 3)
+            self.chooses = features == 3
         assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if self.chooses else 0x3D) == 0
         self.bits = self.byte()
         self.priors = read_priors() if self.flags & 64 else None
@@ -315,6 +319,8 @@ class Header(Fields):  # section 2
         self.points, self.vertices = self.used - self.split, self.used + self.isolated
         extra = self.varint()
         self.corners, self.triangles = extra + 3 * self.faces, extra == 0
+        self.degenerate = self.varint() if b[3] == 6 else 0
+        assert b[3] != 6 or 0 < self.degenerate < self.faces
         self.highest = self.varint()
         self.color = None
         if self.flags & 2:
@@ -323,7 +329,7 @@ class Header(Fields):  # section 2
         some = self.vertices > 0
         present = [self.faces > 0, self.split > 0, some, some and not self.color, some and self.normal_bits > 0,
                    some and self.texcoord_bits > 0, self.highest > 0, self.faces > 0 and self.face_bits > 0,
-                   some and self.flags & 1 > 0]
+                   some and self.flags & 1 > 0, self.degenerate > 0]
         sizes = [self.varint() if x else 0 for x in present]
         self.take_sections(sizes)
 
@@ -349,7 +355,7 @@ class Connectivity:  # section 4
         self.n_vertices, self.degrees, self.border = 0, {}, {}
         self.last_across, self.latest = 1, 0
         self.queue, self.queued = [], set()
-        while len(self.faces) < header.faces:
+        while len(self.faces) < header.faces - header.degenerate:
             gate = self.gate()
             if gate is None:
                 corners = []
@@ -361,9 +367,39 @@ class Connectivity:  # section 4
                 self.table_gate(gate)
             elif self.across(gate):
                 self.face(gate)
-        assert self.n_vertices == header.points and len(self.vertex) == header.corners
+        self.walked = len(self.vertex)  # corners
+        assert self.n_vertices == header.points and self.walked == header.corners - 3 * header.degenerate
         if header.faces:
             self.d.finish()
+        if header.degenerate:
+            self.degenerate_faces(Decoder(header.sections[9]))
+
+    def degenerate_faces(self, d):  # section 16
+        at, last, left = [0] * self.n_vertices, 0, self.h.degenerate
+        for c in range(self.walked):
+            t = self.twin[c]
+            if t is not None and t < c:
+                continue
+            s, e, n = self.vertex[c], self.end(c), 0
+            while left:
+                another = d.mixed(("another 1", min(n, 2), at[s], at[e]), ("another 2", min(n, 2), last if n == 0 else 0))
+                last = another if n == 0 else last
+                if not another:
+                    break
+                at[s] = min(3, at[s] + 1)
+                at[e] = min(3, at[e] + 1)
+                one_point = d.bit("one point")
+                kind = 2 * one_point + d.bit(("end", one_point))
+                first = len(self.vertex)
+                self.vertex += [(e, s, s), (e, s, e), (s, s, s), (e, e, e)][kind]
+                self.twin += [(c, None, t), (c, t, None), (None, None, None), (None, None, None)][kind]
+                self.face_of += [len(self.faces)] * 3
+                self.next += [first + 1, first + 2, first]
+                self.previous += [first + 2, first, first + 1]
+                self.faces.append((first, 3))
+                n, left = n + 1, left - 1
+        assert left == 0
+        d.finish()
 
     def degree(self, v):
         return min(9, self.degrees.get(v, 0))
@@ -659,7 +695,7 @@ class Positions:  # section 6
         self.mask, self.half = (1 << header.bits) - 1, 1 << header.bits - 1
         self.read_weights()
         self.around = [[] for _ in range(header.points)]
-        for corner, vertex in enumerate(mesh.vertex):
+        for corner, vertex in enumerate(mesh.vertex[: mesh.walked]):
             self.around[vertex].append(corner)
         self.find_parts()
         self.at, self.classes, self.error, self.last_choice = [], [], [[0, 0], [0, 0]], 0
@@ -819,7 +855,7 @@ class Attributes:  # sections 7 to 9
             if t is not None and (self.vertex[c] != self.vertex[mesh.next[t]] or self.vertex[mesh.next[c]] != self.vertex[t]):
                 self.twin[c] = None
         self.around = [[] for _ in range(header.vertices)]
-        for corner, vertex in enumerate(self.vertex):
+        for corner, vertex in enumerate(self.vertex[: mesh.walked]):
             self.around[vertex].append(corner)
         self.position = [positions.at[seams.point[v] if v < header.used else v - header.split] for v in range(header.vertices)]
         self.stencils = [Stencil(mesh, self.vertex, self.twin, self.around[v], v) for v in range(header.vertices)]

@@ -184,6 +184,29 @@ QuantizedMesh degenerate() {
   return mesh;
 }
 
+// Triangles that rounding has closed on the edges of faces, and some at one point; of every other one a corner has a
+// vertex of its own.
+QuantizedMesh with_slivers(QuantizedMesh mesh, uint32_t count) {
+  Random random(31);
+  const auto n_faces = static_cast<uint32_t>(mesh.faces.size());
+  for (uint32_t i = 0; i < count; ++i) {
+    const Face face = mesh.faces[random.below(n_faces)];
+    const auto k = static_cast<uint32_t>(random.below(face.count));
+    const uint32_t a = mesh.indices[face.first + k], b = mesh.indices[face.first + (k + 1) % face.count];
+    uint32_t twin = random.below(9) == 0 ? b : a;  // at a's point, or all at b's
+    const uint32_t other = twin == b ? b : a;
+    if (i % 2 == 1) {
+      mesh.vertices.push_back(mesh.vertices[twin]);
+      twin = static_cast<uint32_t>(mesh.vertices.size() - 1);
+    }
+    if (random.below(2) == 0)
+      add_face(mesh, {other, twin, b}, i % 3);
+    else
+      add_face(mesh, {twin, other, b}, i % 3);
+  }
+  return mesh;
+}
+
 QuantizedMesh extremes(int bits) {
   QuantizedMesh mesh = without_faces(64);
   Random random(11);
@@ -354,6 +377,12 @@ std::vector<NamedMesh> mesh_zoo() {
   add("duplicate faces", with_duplicates(wave_mesh(4, 4, false), 60));
   add("isolated vertices", with_isolated(wave_mesh(8, 8, false), 50));
   add("degenerate faces", degenerate());
+  add("slivers", with_slivers(wave_mesh(14, 11, true), 120));
+  add("slivers among quads", shuffled(with_slivers(wave_mesh(9, 8, false), 40)));
+  add("slivers with attributes",
+      with_face_values(with_attributes(with_slivers(with_seams(wave_mesh(12, 8, true), 6), 50), 10, 12), 2, 8));
+  add("many slivers on few edges", with_slivers(wave_mesh(2, 1, true), 300));
+  add("pin of 4 bits", pin_mesh(16, 24, 4));
   add("extremes of 16 bits", extremes(16));
   add("one bit", extremes(1));
   add("hard edges", with_seams(wave_mesh(12, 9, true), 1));
