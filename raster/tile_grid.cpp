@@ -22,11 +22,12 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   for (size_t i = 0; i < triangles_.size(); ++i)
     input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
   if (first_sample == 0 && takes_first_sample_from_grid(input)) {
-    input.kernels->tile.first_sample(grid_, triangles_.data(), corner, depth_, ids_);
-    for (int y = 0; y < area.height; ++y) {
-      if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth.pixel(area.x, area.y + y));
-      if (!input.id.empty()) std::copy_n(ids_ + y * kTileSize, area.width, input.id.pixel(area.x, area.y + y));
-    }
+    const bool has_depth = !input.depth.empty(), has_ids = !input.id.empty();
+    const FirstSampleTarget target{
+        has_depth ? input.depth.pixel(area.x, area.y) : depth_, has_depth ? input.depth.stride : kTileSize,
+        has_ids ? input.id.pixel(area.x, area.y) : ids_, has_ids ? input.id.stride : kTileSize};
+    if (has_depth || has_ids)
+      input.kernels->tile.first_sample(grid_, area.width, area.height, triangles_.data(), corner, target);
   }
   // The one whose shading leaves the packs as they are goes first.
   const int first = input.has_final_colors[1] ? 1 : 0;

@@ -99,7 +99,11 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
         table->tile.rasterize_grid(*list[i], i + 1, list.data(), {corner, corner}, tile.grid);
       for (size_t i = 0; i < triangles.size(); ++i) triangles[i].id = static_cast<uint32_t>(1000 + i);
       Tile first;
-      table->tile.first_sample(tile.grid, list.data(), {corner, corner}, first.depth, first.ids);
+      std::fill(std::begin(first.depth), std::end(first.depth), 7.0f);  // beyond width and height it stays
+      std::fill(std::begin(first.ids), std::end(first.ids), 7u);
+      const int width = kTileSize - round % 9, height = kTileSize - round % 4;
+      table->tile.first_sample(tile.grid, width, height, list.data(), {corner, corner},
+                               {first.depth, kTileSize, first.ids, kTileSize});
       for (int s = 0; s < tile.grid.n; ++s) {
         Tile expected;
         std::fill(std::begin(expected.depth), std::end(expected.depth), 1.0f);
@@ -111,8 +115,10 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
         bool same = true;
         for (int pixel = 0; pixel < kTilePixels; ++pixel) same = same && tile.id_at(pixel, s) == expected.ids[pixel];
         for (int pixel = 0; s == 0 && pixel < kTilePixels; ++pixel) {
-          same = same && first.depth[pixel] == expected.depth[pixel];
-          same = same && first.ids[pixel] == (expected.ids[pixel] == 0 ? 0 : 999 + expected.ids[pixel]);
+          const bool in = pixel % kTileSize < width && pixel / kTileSize < height;
+          same = same && first.depth[pixel] == (in ? expected.depth[pixel] : 7.0f);
+          const uint32_t id = expected.ids[pixel] == 0 ? 0 : 999 + expected.ids[pixel];
+          same = same && first.ids[pixel] == (in ? id : 7u);
         }
         REQUIRE(same);
       }

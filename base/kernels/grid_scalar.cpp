@@ -48,19 +48,22 @@ void rasterize_grid(const RasterTriangle& t, uint32_t id, const RasterTriangle* 
       }
 }
 
-void first_sample(const SampleGrid& grid, const RasterTriangle* const* triangles, SamplePosition origin, float* depth,
-                  uint32_t* ids) {
-  for (int at = 0; at < kTileSize * kTileSize; ++at) {
-    const bool is_split = grid.whole[at] == kSplitPixel;
-    const uint32_t id = is_split ? grid.ids[at * kGridSamples] : grid.whole[at];
-    depth[at] = 1.0f;
-    ids[at] = 0;
-    if (id == 0) continue;
-    const RasterTriangle& t = *triangles[id - 1];
-    const int px = at % kTileSize, py = at / kTileSize;
-    depth[at] = depth_at(t, origin.x + 256 * px + grid.x[0] - t.x0, origin.y + 256 * py + grid.y[0] - t.y0);
-    ids[at] = t.id;
-  }
+void first_sample(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,
+                  SamplePosition origin, const FirstSampleTarget& target) {
+  for (int py = 0; py < height; ++py)
+    for (int px = 0; px < width; ++px) {
+      const int at = py * kTileSize + px;
+      const bool is_split = grid.whole[at] == kSplitPixel;
+      const uint32_t id = is_split ? grid.ids[at * kGridSamples] : grid.whole[at];
+      float& depth = target.depth[py * target.depth_stride + px];
+      uint32_t& shown = target.ids[py * target.id_stride + px];
+      depth = 1.0f;
+      shown = 0;
+      if (id == 0) continue;
+      const RasterTriangle& t = *triangles[id - 1];
+      depth = depth_at(t, origin.x + 256 * px + grid.x[0] - t.x0, origin.y + 256 * py + grid.y[0] - t.y0);
+      shown = t.id;
+    }
 }
 
 // The packs of one group of eight pixels, in the order in which their triangles come by.

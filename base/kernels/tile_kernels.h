@@ -80,6 +80,14 @@ struct SampleGrid {
   float* depth;                              // the same
 };
 
+// Where first_sample() writes: rows so many elements apart.
+struct FirstSampleTarget {
+  float* depth;
+  ptrdiff_t depth_stride;
+  uint32_t* ids;
+  ptrdiff_t id_stride;
+};
+
 // Rows that interpolate() writes. LOD needs the texture's size; null `lod` where there is no texture.
 struct InterpolateTarget {
   int rendering;     // 0, 1 or 2: which RasterTriangle::attributes
@@ -208,10 +216,10 @@ struct TileKernels {
   void (*rasterize_grid)(const RasterTriangle& triangle, uint32_t id, const RasterTriangle* const* triangles,
                          SamplePosition origin, const SampleGrid& grid);
 
-  // Depth and RasterTriangle::id of the tile's pixels at sample 0 of the grid, as rasterize() finds them there; 1 and 0
-  // where nothing is. depth, ids: kTileSize * kTileSize.
-  void (*first_sample)(const SampleGrid& grid, const RasterTriangle* const* triangles, SamplePosition origin,
-                       float* depth, uint32_t* ids);
+  // Depth and RasterTriangle::id of the tile's first width x height pixels at sample 0 of the grid, as rasterize()
+  // finds them there; 1 and 0 where nothing is. Groups of eight are read whole.
+  void (*first_sample)(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,
+                       SamplePosition origin, const FirstSampleTarget& target);
 
   // As collect_packs() for rows [first_row, last_row) of the tile: one pack for each triangle that the samples in the
   // set `samples` (bit s = sample s) see in each group of eight pixels, with the number of such samples as weights.
