@@ -63,6 +63,13 @@ Result<void> check_options(const SourceImage& image, const EncodeOptions& option
   if (options.metadata != nullptr) PAC_CHECK(check_metadata(*options.metadata));
   if (options.seen.data != nullptr && (options.seen.width != image.width() || options.seen.height != image.height()))
     return bad("the picture to be seen is not of the image's size");
+  if (!options.importance.empty()) {
+    const size_t n_blocks =
+        static_cast<size_t>(ceil_div(image.width(), 8)) * static_cast<size_t>(ceil_div(image.height(), 8));
+    if (options.importance.size() != n_blocks) return bad("the importance of blocks is not of the image's size");
+    for (const float importance : options.importance)
+      if (!(importance > 0.0f && importance <= 1e6f)) return bad("the importance of a block is not within (0, 1e6]");
+  }
   if (!options.tables) return {};
   for (const QuantTable* table : {&options.tables->luma, &options.tables->chroma})
     for (const uint16_t step : *table)
@@ -118,29 +125,9 @@ void ImageEncoder::start(const SourceImage& image, const EncodeOptions& options,
   seen_visibility_.clear();
   const bool is_full = luma.h == frame.h_max && luma.v == frame.v_max;
   if (options.seen.data != nullptr && options.trellis && masking_ != Tune::psnr && is_full) measure_seen();
+  for (std::vector<float>& of_component : importance_) of_component.clear();
+  if (options.trellis && !options.importance.empty()) spread_importance(frame);
   if (is_adapted() || is_fitted) design(!is_adapted());
-}
-
-// Of each luma block of the picture seen, in rows.
-void ImageEncoder::measure_seen() {
-  CoefficientSource seen;
-  const int n_rows = ceil_div(options_.seen.height, 8);
-  SourceImage image;
-  image.rgb = options_.seen;
-  seen.reset(image, make_frame(options_.seen.width, options_.seen.height, Subsampling::gray), *kernels_, false, 0,
-             n_rows);
-  for (int row = 0; row < n_rows; ++row) {
-    seen.load(row);
-    const size_t n = seen.n_blocks(0, row);
-    for (size_t i = 0; i < n; ++i) seen_visibility_.push_back(visibility(masking_, seen.row(0) + 64 * i));
-  }
-}
-
-// Of luma block i of a loaded MCU row.
-float ImageEncoder::visibility_of(const Band& band, int mcu_row, size_t i) const {
-  if (seen_visibility_.empty()) return visibility(masking_, band.source.row(0) + 64 * i);
-  const Component& luma = band.source.frame().components[0];
-  return seen_visibility_[static_cast<size_t>(mcu_row) * luma.v * static_cast<size_t>(luma.width_blocks) + i];
 }
 
 // Of all rows in order, whatever the bands.
@@ -213,14 +200,14 @@ void ImageEncoder::optimize_levels(Band& band, int mcu_row) {
   for (int c = 0; c < frame.n_components; ++c) {
     const size_t n = band.source.n_blocks(c, mcu_row), set = c == 0 ? 0 : 1;
     const int16_t* coefficients = band.source.row(c);
-    if (c == 0) band.importance.resize(n);
+    band.importance.resize(n);
     for (size_t i = 0; i < n; ++i) {
-      if (c == 0) band.importance[i] = visibility_of(band, mcu_row, i) / mean_visibility_;
-      trellis_quantize(coefficients + 64 * i, weights_[set], c == 0 ? band.importance[i] : 1.0f, costs_[set],
+      band.importance[i] = importance_of(band, c, mcu_row, i);
+      trellis_quantize(coefficients + 64 * i, weights_[set], band.importance[i], costs_[set],
                        band.levels.zigzag[c].data() + 64 * i, band.levels.nonzero[c][i]);
     }
-    band.dc_trellis.choose(frame, c, mcu_row, options_.restart_interval_mcus, coefficients,
-                           c == 0 ? band.importance.data() : nullptr, weights_[set], dc_costs_[set], band.levels);
+    band.dc_trellis.choose(frame, c, mcu_row, options_.restart_interval_mcus, coefficients, band.importance.data(),
+                           weights_[set], dc_costs_[set], band.levels);
   }
 }
 

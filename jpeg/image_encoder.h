@@ -51,7 +51,7 @@ class ImageEncoder {
     CoefficientSource source;
     LevelSums sums;
     Levels levels;
-    std::vector<float> importance;  // of the luma blocks of an MCU row, for the trellis
+    std::vector<float> importance;  // of a component's blocks in an MCU row, for the trellis
     DcTrellis dc_trellis;
     Tokenizer tokenizer;
     BlockWalker walker;
@@ -66,6 +66,8 @@ class ImageEncoder {
   bool is_adapted() const { return is_tuned() && options_.table_source == TableSource::adapted; }
   double dead_zone() const { return options_.dead_zone + bias_ * (kMaxDeadZone - options_.dead_zone); }
   void measure_seen();
+  void spread_importance(const Frame& frame);
+  float importance_of(const Band& band, int c, int mcu_row, size_t i) const;
   float visibility_of(const Band& band, int mcu_row, size_t i) const;
   void design(bool dc_only);
   void set_tables(const QuantTables& tables, double dead_zone);
@@ -105,6 +107,7 @@ class ImageEncoder {
   ChromaGain chroma_gain_;              // 1 where tables are not tuned
   Tune masking_ = Tune::psnr;           // options_.masking, or options_.tune where tables are tuned
   std::vector<float> seen_visibility_;  // empty: a block's own
+  std::vector<float> importance_[3];    // options_.importance of each component's blocks; empty: 1
   float mean_visibility_ = 1;           // of the luma blocks
   bool use_trellis_ = false;            // costs_ are known
 };

@@ -87,6 +87,9 @@ struct EncodeOptions {
   // Which errors hide, for the trellis: psnr: none; the others: those in busy luma blocks, as those tunings have it.
   // Empty: as `tune` says where tables are tuned, else psnr.
   std::optional<Tune> masking = {};
+  // How many times the trellis counts an error in each 8x8 block of pixels, for whatever reason the caller has: above
+  // 0, ceil(height / 8) rows of ceil(width / 8). A block that covers several of them takes their mean. Empty: once.
+  std::span<const float> importance = {};
   Isa isa = best_isa();                  // results never depend on it
   const Metadata* metadata = nullptr;    // written behind the JFIF segment, whose density it tells
   const StreamTables* stream = nullptr;  // tables that the decoder has already: `tables`, `table_source` and `huffman`

@@ -65,6 +65,12 @@ Content content_of(ArmKind kind) {
   return kind == ArmKind::image_based ? Content::image : Content::difference;
 }
 
+// What depends on the picture besides what the caller wants.
+CodingOptions with_importance(CodingOptions options, const Renderings& renderings) {
+  options.importance = renderings.blocks.importance;
+  return options;
+}
+
 double& encode_time(Timings& timings, ArmKind kind) {
   return kind == ArmKind::image_based ? timings.encode_image : timings.encode_difference;
 }
@@ -109,8 +115,9 @@ Result<RenderOptions> with_defaults(RenderOptions options, const SceneSet& scene
 // What the same tables cost with Huffman codes made for the picture: the standard ones hide half of the gain.
 Result<void> measure_optimal_huffman(const Renderings& renderings, ArmKind kind, CodingOptions options, Arm& arm) {
   options.huffman = jpeg::Huffman::optimal;
-  PAC_TRY(const CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind),
-                                                  arm.coded.quality, options, renderings.high.view()));
+  PAC_TRY(const CodedImage coded,
+          code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), arm.coded.quality,
+                          with_importance(options, renderings), renderings.high.view()));
   arm.optimal_huffman_bytes = coded.bytes.size();
   return {};
 }
@@ -156,20 +163,25 @@ Result<Renderings> render_split(const SceneSet& scene, const raster::Camera& cam
   out.estimated_model_bytes = static_cast<double>(out.low_polygons) * 10 / 3;
   out.resident_model_bytes = serialize_model(frame.low_scene(), out.split.low.texture).size();
   if (options.time_renders) PAC_CHECK(time_renders(scene, camera, options, frame, out));
+  if (options.find_blocks || options.importance.is_on()) {
+    PAC_TRY(out.blocks, find_importance(frame.renderer(), scene.fine, camera, out.split.high, options.width,
+                                        options.height, options.importance));
+  }
   return out;
 }
 
 Result<Arm> code_arm_at_quality(const Renderings& renderings, ArmKind kind, double quality,
                                 const CodingOptions& options, Timings* timings) {
   const Stopwatch watch;
-  PAC_TRY(CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality, options,
-                                            renderings.high.view()));
+  PAC_TRY(CodedImage coded, code_at_quality(coded_picture(renderings, kind).view(), content_of(kind), quality,
+                                            with_importance(options, renderings), renderings.high.view()));
   if (timings != nullptr) encode_time(*timings, kind) = watch.milliseconds();
   return finish_arm(renderings, kind, std::move(coded), options, timings);
 }
 
 Result<Arm> code_arm_at_size(const Renderings& renderings, ArmKind kind, uint64_t target_bytes,
-                             const CodingOptions& options, Timings* timings) {
+                             const CodingOptions& given, Timings* timings) {
+  const CodingOptions options = with_importance(given, renderings);
   const ConstRgbView picture = coded_picture(renderings, kind).view(), seen = renderings.high.view();
   PAC_TRY(CodedImage coded, code_at_size(picture, content_of(kind), target_bytes, options, seen));
   if (timings != nullptr) {  // of one encode, not of the search

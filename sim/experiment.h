@@ -9,6 +9,7 @@
 #include "base/isa.h"
 #include "base/result.h"
 #include "raster/scene.h"
+#include "sim/block_importance.h"
 #include "sim/match.h"
 #include "sim/scenes.h"
 #include "sim/screen_model.h"
@@ -47,10 +48,12 @@ struct RenderOptions {
   std::string split;          // as make_split; empty = the scene's own
   int width = 0, height = 0;  // 0 = the scene's own
   int samples = 16;
-  bool transmit_model = false;  // L is drawn from the decoded screen-space model
-  int position_bits = 16;       // of that model, 1..16
-  bool time_renders = false;    // also render H and L alone, for Timings
-  int threads = 1;              // 0 = all
+  bool transmit_model = false;   // L is drawn from the decoded screen-space model
+  int position_bits = 16;        // of that model, 1..16
+  bool time_renders = false;     // also render H and L alone, for Timings
+  bool find_blocks = false;      // also tell what each 8x8 block shows, for Renderings::blocks
+  ImportanceOptions importance;  // how much errors in them count, of both arms; heeded where tables are adapted
+  int threads = 1;               // 0 = all
   Isa isa = best_isa();
 };
 
@@ -58,6 +61,7 @@ struct RenderOptions {
 struct Renderings {
   Split split;
   RgbImage high, low, difference;
+  BlockImportance blocks;  // of H; empty unless asked for or the options of importance are on
   Entropies high_entropy, low_entropy, difference_entropy;
   uint64_t high_polygons = 0, low_polygons = 0;  // faces of the models, as the paper counts
   uint64_t visible_low_polygons = 0;             // of the transmitted model, after clipping; 0 where resident

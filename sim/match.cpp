@@ -28,9 +28,11 @@ jpeg::EncodeOptions encode_options(const Source& source, const jpeg::QuantTables
   encode.subsampling = options.subsampling;
   encode.huffman = options.huffman;
   if (options.huffman == jpeg::Huffman::difference && !is_difference) encode.huffman = jpeg::Huffman::standard;
-  if (options.tables == TableFamily::adapted && options.masking != jpeg::Tune::psnr) {
+  const bool has_weights = options.masking != jpeg::Tune::psnr || !options.importance.empty();
+  if (options.tables == TableFamily::adapted && has_weights) {
     encode.trellis = true;
     encode.masking = options.masking;
+    encode.importance = options.importance;
     if (is_difference) encode.seen = source.seen;
   }
   encode.isa = options.isa;
@@ -176,13 +178,15 @@ double coded_quality(double equivalent_quality, Content content) {
 Result<CodedImage> code_at_quality(ConstRgbView image, Content content, double quality, const CodingOptions& options,
                                    ConstRgbView seen) {
   if (!(quality > 0 && quality <= 100)) return Failure{Error::bad_argument, 0, "quality must be in (0, 100]"};
-  PAC_TRY(const ScaledTables family, ScaledTables::create(image, options.tables, options.subsampling));
+  PAC_TRY(const ScaledTables family,
+          ScaledTables::create(image, options.tables, options.subsampling, options.importance));
   return code({image, content, seen}, quality, family, options);
 }
 
 Result<CodedImage> code_at_size(ConstRgbView image, Content content, uint64_t target_bytes,
                                 const CodingOptions& options, ConstRgbView seen) {
-  PAC_TRY(const ScaledTables family, ScaledTables::create(image, options.tables, options.subsampling));
+  PAC_TRY(const ScaledTables family,
+          ScaledTables::create(image, options.tables, options.subsampling, options.importance));
   const Source source{image, content, seen};
   SizeSearch search(source, family, target_bytes, options);
   PAC_TRY(const double quality, search.run());

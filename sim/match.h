@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/image.h"
@@ -34,6 +35,9 @@ struct CodingOptions {
   // Where tables are adapted: ssim or visual let a trellis choose the levels of both arms, which puts errors where H is
   // busy: in D too, by `seen`. psnr: no trellis. A client decodes the same way whatever this is.
   jpeg::Tune masking = jpeg::Tune::psnr;
+  // Where tables are adapted: how many times an error in each 8x8 block of pixels counts (sim/block_importance.h), for
+  // the tables and for a trellis, as jpeg::EncodeOptions::importance. Empty: alike.
+  std::span<const float> importance = {};
   jpeg::Subsampling subsampling = jpeg::Subsampling::yuv420;  // the paper's "4:1:1"
   int threads = 1;       // encodes tried at once; never changes the result. 0 = all
   Isa isa = best_isa();  // never changes the result

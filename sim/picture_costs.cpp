@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/exact_math.h"
@@ -102,21 +103,31 @@ void for_each_component(ConstRgbView image, jpeg::Subsampling subsampling, Use&&
   }
 }
 
-// How often each value occurs, rounded to an integer (|coefficient| <= 1024, DC differences twice that).
+// How often each value occurs, rounded to an integer (|coefficient| <= 1024, DC differences twice that), or what its
+// errors count.
 constexpr int kLargest = 2048;
-using Histogram = std::vector<uint32_t>;  // index 0..2*kLargest: value + kLargest
+using Histogram = std::vector<double>;  // index 0..2*kLargest: value + kLargest
 
 struct Histograms {
   std::vector<Histogram> coefficient = std::vector<Histogram>(64, Histogram(2 * kLargest + 1));
+  std::vector<Histogram> important;                 // the same, each block as often as it counts; empty: once
   Histogram dc_step = Histogram(2 * kLargest + 1);  // DC minus the DC of the block before
 
-  void add(Component& component, const Basis& basis) {
+  // importance: of each block, empty: 1.
+  void add(Component& component, const Basis& basis, const std::vector<float>& importance) {
     int last_dc = 0;
+    size_t block = 0;
+    if (!importance.empty()) important.resize(64, Histogram(2 * kLargest + 1));
     for_each_block(component, basis, [&](const double(&coefficients)[8][8]) {
-      for (int k = 0; k < 64; ++k) ++coefficient[static_cast<size_t>(k)][bin(rounded(coefficients[k / 8][k % 8]))];
+      for (int k = 0; k < 64; ++k) {
+        const size_t at = bin(rounded(coefficients[k / 8][k % 8]));
+        coefficient[static_cast<size_t>(k)][at] += 1;
+        if (!importance.empty()) important[static_cast<size_t>(k)][at] += static_cast<double>(importance[block]);
+      }
       const int dc = rounded(coefficients[0][0]);
-      ++dc_step[bin(dc - last_dc)];
+      dc_step[bin(dc - last_dc)] += 1;
       last_dc = dc;
+      ++block;
     });
   }
   static int rounded(double value) { return static_cast<int>(std::floor(value + 0.5)); }
@@ -137,8 +148,8 @@ struct Occurrence {
 std::vector<Occurrence> occurrences(const Histogram& histogram) {
   std::vector<Occurrence> list;
   for (int value = -kLargest; value <= kLargest; ++value)
-    if (const uint32_t count = histogram[static_cast<size_t>(value + kLargest)]; count > 0)
-      list.push_back({value, static_cast<double>(count)});
+    if (const double count = histogram[static_cast<size_t>(value + kLargest)]; count > 0)
+      list.push_back({value, count});
   return list;
 }
 
@@ -164,12 +175,31 @@ double level_bits(const std::vector<Occurrence>& values, int step) {
   return total > 0 ? (total * exact_log(total) - sum) / 0.69314718055994530942 : 0;
 }
 
+// From blocks of pixels to those of a component that has a sample for so many pixels: the mean.
+std::vector<float> spread(std::span<const float> importance, ConstRgbView image, const Component& component) {
+  std::vector<float> out;
+  if (importance.empty()) return out;
+  const int columns = (image.width + 7) / 8, rows = (image.height + 7) / 8;
+  const int x_factor = component.width < 8 * columns ? 2 : 1, y_factor = component.height < 8 * rows ? 2 : 1;
+  for (int top = 0; top < component.height / 8 * y_factor; top += y_factor)
+    for (int left = 0; left < component.width / 8 * x_factor; left += x_factor) {
+      float sum = 0;
+      const int bottom = std::min(top + y_factor, rows), right = std::min(left + x_factor, columns);
+      for (int y = top; y < bottom; ++y)
+        for (int x = left; x < right; ++x) sum += importance[static_cast<size_t>(y * columns + x)];
+      out.push_back(sum / static_cast<float>((bottom - top) * (right - left)));
+    }
+  return out;
+}
+
 void fill_costs(const Histograms& histograms, std::array<StepCosts, 64>& costs) {
   for (size_t k = 0; k < 64; ++k) {
     const std::vector<Occurrence> values = occurrences(histograms.coefficient[k]);
     const std::vector<Occurrence> coded = k == 0 ? occurrences(histograms.dc_step) : values;
+    const std::vector<Occurrence> important =
+        histograms.important.empty() ? values : occurrences(histograms.important[k]);
     for (int step = 1; step < 256; ++step) {
-      costs[k].error[static_cast<size_t>(step)] = squared_error(values, step);
+      costs[k].error[static_cast<size_t>(step)] = squared_error(important, step);
       costs[k].bits[static_cast<size_t>(step)] = level_bits(coded, step);
     }
   }
@@ -189,11 +219,13 @@ CoefficientPeaks measure_peaks(ConstRgbView image, jpeg::Subsampling subsampling
   return peaks;
 }
 
-std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling) {
+std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling,
+                                            std::span<const float> importance) {
   const Basis basis;
   Histograms luma, chroma;
-  for_each_component(image, subsampling,
-                     [&](Component& component, bool is_chroma) { (is_chroma ? chroma : luma).add(component, basis); });
+  for_each_component(image, subsampling, [&](Component& component, bool is_chroma) {
+    (is_chroma ? chroma : luma).add(component, basis, spread(importance, image, component));
+  });
   auto costs = std::make_unique<PictureCosts>();
   fill_costs(luma, costs->luma);
   fill_costs(chroma, costs->chroma);

@@ -15,12 +15,12 @@ constexpr double kLeastWorth = 1.0 / 16, kGreatestWorth = 16;
 constexpr int kSide = 16;  // of a macroblock
 
 // Of each of the scene's materials: is it named? Empty where a name is none of them.
-std::vector<uint8_t> named_materials(const raster::Scene& low, const std::vector<std::string>& names) {
-  std::vector<uint8_t> named(low.materials.size());
+std::vector<uint8_t> named_materials(const raster::Scene& scene, const std::vector<std::string>& names) {
+  std::vector<uint8_t> named(scene.materials.size());
   for (const std::string& name : names) {
     bool is_known = false;
     for (size_t i = 0; i < named.size(); ++i)
-      if (low.materials[i].name == name) named[i] = 1, is_known = true;
+      if (scene.materials[i].name == name) named[i] = 1, is_known = true;
     if (!is_known) return {};
   }
   return named;
@@ -48,20 +48,37 @@ double variance(ConstRgbView high, int left, int top) {
 
 }  // namespace
 
-Result<QuantizerAdaptation> QuantizerAdaptation::create(const raster::Scene& low, const Foreground& foreground) {
-  QuantizerAdaptation out;
-  if (!foreground.is_on()) return out;
+void read_foreground(std::string_view names, Foreground& foreground) {
+  while (!names.empty()) {
+    const std::string_view name = names.substr(0, names.find(','));
+    names.remove_prefix(std::min(name.size() + 1, names.size()));
+    if (name == "moving")
+      foreground.moving = true;
+    else if (!name.empty())
+      foreground.materials.emplace_back(name);
+  }
+}
+
+Result<std::vector<float>> worth_of_ids(const raster::Scene& scene, const Foreground& foreground) {
+  std::vector<float> worth;
+  if (!foreground.is_on()) return worth;
   if (!(foreground.worth >= kLeastWorth && foreground.worth <= kGreatestWorth))
     return Failure{Error::bad_argument, 0, "the foreground's worth is outside 1/16..16"};
-  const std::vector<uint8_t> named = named_materials(low, foreground.materials);
-  if (named.size() != low.materials.size())
-    return Failure{Error::bad_argument, 0, "the client's model has no such material for a foreground"};
-  const std::vector<uint32_t> movers = movers_of(low);
-  out.worth_.assign(low.mesh.faces.size() + 1, 1.0F);
-  for (size_t face = 0; face < low.mesh.faces.size(); ++face) {
+  const std::vector<uint8_t> named = named_materials(scene, foreground.materials);
+  if (named.size() != scene.materials.size())
+    return Failure{Error::bad_argument, 0, "the model has no such material for a foreground"};
+  const std::vector<uint32_t> movers = movers_of(scene);
+  worth.assign(scene.mesh.faces.size() + 1, 1.0F);
+  for (size_t face = 0; face < scene.mesh.faces.size(); ++face) {
     const bool moves = foreground.moving && !movers.empty() && movers[face + 1] != kStands;
-    if (moves || named[low.mesh.faces[face].material] != 0) out.worth_[face + 1] = static_cast<float>(foreground.worth);
+    if (moves || named[scene.mesh.faces[face].material] != 0) worth[face + 1] = static_cast<float>(foreground.worth);
   }
+  return worth;
+}
+
+Result<QuantizerAdaptation> QuantizerAdaptation::create(const raster::Scene& low, const Foreground& foreground) {
+  QuantizerAdaptation out;
+  PAC_TRY(out.worth_, worth_of_ids(low, foreground));
   return out;
 }
 

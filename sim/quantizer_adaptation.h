@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/image.h"
@@ -23,11 +24,18 @@ struct Foreground {
   bool is_on() const { return moving || !materials.empty(); }
 };
 
+// "tartan,moving": materials and whatever moves.
+void read_foreground(std::string_view names, Foreground& foreground);
+
+// What an error counts where a pixel shows id (face + 1, 0 = background); empty: once everywhere. Fails with
+// bad_argument: worth outside its range, a material that the scene has not.
+Result<std::vector<float>> worth_of_ids(const raster::Scene& scene, const Foreground& foreground);
+
 class QuantizerAdaptation {
  public:
   QuantizerAdaptation() = default;  // alike everywhere
 
-  // Fails with bad_argument: worth outside its range, a material that L has not.
+  // Fails as worth_of_ids().
   static Result<QuantizerAdaptation> create(const raster::Scene& low, const Foreground& foreground);
 
   // What mpeg1::PictureOptions::quantizer_factors takes, by the ids that L shows and, where `masks`, by how much of an

@@ -72,11 +72,12 @@ bool same_tables(const jpeg::QuantTables& a, const jpeg::QuantTables& b) {
   return a.luma == b.luma && a.chroma == b.chroma;
 }
 
-Result<ScaledTables> ScaledTables::create(ConstRgbView image, TableFamily family, jpeg::Subsampling subsampling) {
+Result<ScaledTables> ScaledTables::create(ConstRgbView image, TableFamily family, jpeg::Subsampling subsampling,
+                                          std::span<const float> importance) {
   if (image.empty()) return Failure{Error::bad_argument, 0, "image has no pixels"};
   ScaledTables tables;
   if (family == TableFamily::adapted)
-    tables.costs_ = measure_costs(image, subsampling);
+    tables.costs_ = measure_costs(image, subsampling, importance);
   else
     tables.peaks_ = measure_peaks(image, subsampling);
   return tables;

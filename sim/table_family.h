@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/image.h"
@@ -30,8 +31,10 @@ struct CoefficientPeaks {
 CoefficientPeaks measure_peaks(ConstRgbView image, jpeg::Subsampling subsampling);
 
 // Gathers them with a floating-point DCT over the picture's 8x8 blocks (edges replicated). DC counts the bits of
-// differences between neighboring blocks, as the codec does. Same bits on every machine.
-std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling);
+// differences between neighboring blocks, as the codec does. importance: how many times a block's errors count, as
+// jpeg::EncodeOptions::importance. Same bits on every machine.
+std::unique_ptr<PictureCosts> measure_costs(ConstRgbView image, jpeg::Subsampling subsampling,
+                                            std::span<const float> importance = {});
 
 // The family of one picture.
 class ScaledTables {
@@ -40,7 +43,9 @@ class ScaledTables {
   // error + lambda * bits [Ratnakar and Livny 1995, RD-OPT], where lambda = ln 2 / 6 * step^2 is the slope at which a
   // fine quantizer of that step trades error for bits, and step = 0.16 s: 16, Annex K's first luma step, at scale 100.
   // So halving s halves the steps of both families, which is what the notations of quality in sim/match.h rest on.
-  static Result<ScaledTables> create(ConstRgbView image, TableFamily family, jpeg::Subsampling subsampling);
+  // importance: as measure_costs, of `adapted`.
+  static Result<ScaledTables> create(ConstRgbView image, TableFamily family, jpeg::Subsampling subsampling,
+                                     std::span<const float> importance = {});
 
   // quality in (0, 100].
   jpeg::QuantTables at_quality(double quality) const;

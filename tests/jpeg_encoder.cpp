@@ -276,6 +276,60 @@ TEST_CASE("errors of a difference image hide where the picture to be seen is bus
   CHECK(jpeg::encode(difference.view(), options).failure().error == Error::bad_argument);
 }
 
+TEST_CASE("where blocks are more important the trellis errs less, in luma and chroma, at any sampling") {
+  RgbImage image(120, 63);
+  Random random(5);
+  for (int y = 0; y < 63; ++y)
+    for (int x = 0; x < 120; ++x)
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = static_cast<uint8_t>(60 + random.next() % 96);
+  std::vector<float> importance(size_t{15} * 8);
+  for (size_t i = 0; i < importance.size(); ++i) importance[i] = i % 15 < 8 ? 0.25f : 4.0f;
+  for (const auto subsampling : {jpeg::Subsampling::yuv444, jpeg::Subsampling::yuv422, jpeg::Subsampling::yuv420}) {
+    CAPTURE(static_cast<int>(subsampling));
+    EncodeOptions options = jpeg::options_for(jpeg::Effort::best, jpeg::Tune::psnr, 60);
+    options.subsampling = subsampling;
+    // Luma and the blue difference, of the less and the more important half.
+    const auto ratios = [&] {
+      const RgbImage decoded = *jpeg::decode(*jpeg::encode(image.view(), options));
+      double errors[2][2] = {};
+      for (int y = 0; y < 63; ++y)
+        for (int x = 0; x < 120; ++x) {
+          if (x >= 56 && x < 72) continue;  // the filter of upsampling looks across
+          int error[3];
+          for (int c = 0; c < 3; ++c) error[c] = image.pixel(x, y)[c] - decoded.pixel(x, y)[c];
+          const double luma = 0.299 * error[0] + 0.587 * error[1] + 0.114 * error[2];
+          errors[0][x < 64 ? 0 : 1] += luma * luma;
+          errors[1][x < 64 ? 0 : 1] += (error[2] - luma) * (error[2] - luma);
+        }
+      return std::pair(errors[0][0] / errors[0][1], errors[1][0] / errors[1][1]);
+    };
+    const auto alike = ratios();
+    options.importance = importance;
+    const auto weighted = ratios();
+    CHECK(weighted.first > 1.5 * alike.first);
+    CHECK(weighted.second > 1.05 * alike.second);
+    options.trellis = false;
+    const auto bytes = jpeg::encode(image.view(), options);
+    options.importance = {};
+    CHECK(*bytes == *jpeg::encode(image.view(), options));
+  }
+}
+
+TEST_CASE(
+    "importance of another number of blocks, or not above 0, is refused; of all blocks alike it changes nothing") {
+  const RgbImage image = test_image(40, 24);
+  EncodeOptions options = jpeg::options_for(jpeg::Effort::best, jpeg::Tune::ssim, 60);
+  const auto plain = jpeg::encode(image.view(), options);
+  std::vector<float> importance(15, 1.0f);
+  options.importance = importance;
+  CHECK(*jpeg::encode(image.view(), options) == *plain);
+  importance[7] = 0.0f;
+  CHECK(jpeg::encode(image.view(), options).failure().error == Error::bad_argument);
+  importance.assign(14, 1.0f);
+  options.importance = importance;
+  CHECK(jpeg::encode(image.view(), options).failure().error == Error::bad_argument);
+}
+
 TEST_CASE("encode_to_size fits the target, and no quality a little higher does") {
   const RgbImage image = test_image(96, 64);
   for (const auto effort : {jpeg::Effort::fast, jpeg::Effort::best}) {

@@ -102,19 +102,6 @@ void declare(Options& options, Request& request) {
   options.text("-o|--output", "DIR", request.out, "streams and sequences go there");
 }
 
-// "tartan,moving" taken apart.
-void read_foreground(const std::string& names, sim::Foreground& foreground) {
-  for (size_t at = 0; at < names.size();) {
-    const size_t comma = std::min(names.find(',', at), names.size());
-    const std::string name = names.substr(at, comma - at);
-    if (name == "moving")
-      foreground.moving = true;
-    else if (!name.empty())
-      foreground.materials.push_back(name);
-    at = comma + 1;
-  }
-}
-
 double kilobits_a_second(uint64_t bytes, const Request& request) {
   return 8e-3 * static_cast<double>(bytes) * request.animation.frames_per_second / request.animation.frames;
 }
@@ -251,7 +238,7 @@ int run_animate(Args args) {
     return options.usage_error("--foreground needs --codec mpeg1");
   if (options.given("--worth") && !options.given("--foreground"))
     return options.usage_error("--worth says nothing without --foreground");
-  read_foreground(request.foreground, animation.video.foreground);
+  sim::read_foreground(request.foreground, animation.video.foreground);
   if (options.given("--prediction")) animation.still_prediction = animation.video.prediction;
   if (animation.codec == sim::VideoCodec::mjpeg && animation.still_prediction == sim::Prediction::block)
     return options.usage_error("--prediction block needs --codec mpeg1");

@@ -1,7 +1,10 @@
 // `pac compare`: one still through both arms at matched bytes.
 #include <cstdio>
+#include <optional>
+#include <string>
 
 #include "base/cambi.h"
+#include "base/edge_band.h"
 #include "base/image_io.h"
 #include "base/metrics.h"
 #include "sim/cli/command.h"
@@ -17,7 +20,7 @@ namespace pac::cli {
 namespace {
 
 struct Request {
-  std::string scene, out;
+  std::string scene, out, weights, foreground;
   int frame = 0, bytes = 0;
   sim::StillOptions still;
   sim::Codec codec = sim::Codec::jpeg;
@@ -50,6 +53,14 @@ void declare(Options& options, Request& request) {
   options.choice<jpeg::Tune>("--masking", coding.masking,
                              {{"none", jpeg::Tune::psnr}, {"ssim", jpeg::Tune::ssim}, {"visual", jpeg::Tune::visual}},
                              "with adapted tables: a trellis puts errors of both arms where H is busy (none)");
+  options.text(
+      "--weights", "CLASS=W,...", request.weights,
+      "with adapted tables: an error in blocks of that class counts W times, 1/16..16: flat, textured, specular, "
+      "edge, silhouette (1)");
+  options.text("--foreground", "NAMES", request.foreground,
+               "with adapted tables: materials of H, or \"moving\" objects, that come before the rest");
+  options.real("--worth", "W", render.importance.foreground.worth, 1.0 / 16, 16,
+               "--foreground: how many times an error there counts; below 1: less than elsewhere (4)");
   options.choice<sim::Codec>("--codec", request.codec, {{"jpeg", sim::Codec::jpeg}}, "of both arms (jpeg)");
   options.integer("--width", "W", render.width, 1, 32768, "pixels (the scene's own)");
   options.integer("--height", "H", render.height, 1, 32768, "pixels (the scene's own)");
@@ -59,8 +70,22 @@ void declare(Options& options, Request& request) {
   options.text("-o|--output", "DIR", request.out, "index.html and the pictures go there");
 }
 
-void json_arm(sim::JsonWriter& json, const char* name, const sim::Arm& arm, const RgbImage& high) {
-  const Metrics metrics = measure(high.view(), arm.shown.view());
+// --weights, --foreground and --worth; a code where they make no sense.
+std::optional<int> read_importance(const Options& options, Request& request) {
+  sim::ImportanceOptions& importance = request.still.render.importance;
+  if (options.given("--worth") && !options.given("--foreground"))
+    return options.usage_error("--worth says nothing without --foreground");
+  const auto read = sim::read_class_weights(request.weights, importance.of_class);
+  if (!read.ok()) return options.usage_error(std::string("--weights: ") + read.failure().text);
+  sim::read_foreground(request.foreground, importance.foreground);
+  if (importance.is_on() && request.still.coding.tables != sim::TableFamily::adapted)
+    return options.usage_error("--weights and --foreground go with --tables adapted");
+  return {};
+}
+
+void json_arm(sim::JsonWriter& json, const char* name, const sim::Arm& arm, const sim::Renderings& renderings) {
+  const ConstRgbView high = renderings.high.view();
+  const Metrics metrics = measure(high, arm.shown.view());
   json.begin_object(name);
   json.field("bytes", arm.total_bytes);
   json.field("image_bytes", arm.image_bytes);
@@ -78,6 +103,7 @@ void json_arm(sim::JsonWriter& json, const char* name, const sim::Arm& arm, cons
   json.field("flip", metrics.flip);
   json.field("psnr_hvs_m_db", metrics.psnr_hvs_m_db);
   json.field("cambi", cambi_luma(arm.shown.view()));
+  json.field("edge_band_rms", masked_rms(high, arm.shown.view(), renderings.blocks.edge_band.view()).rms);
   json.field("max_error", metrics.max_error);
   json.end_object();
 }
@@ -130,8 +156,8 @@ int print_as_json(const std::string& scene, const sim::DividedStill& divided) {
   json.field("resident_bytes", renderings.resident_model_bytes);
   json.end_object();
   if (!divided.divisions.empty()) json_divisions(json, divided.divisions);
-  json_arm(json, "image_based", still.image_based, renderings.high);
-  json_arm(json, "polygon_assisted", still.polygon_assisted, renderings.high);
+  json_arm(json, "image_based", still.image_based, renderings);
+  json_arm(json, "polygon_assisted", still.polygon_assisted, renderings);
   json.end_object();
   return print_json(json);
 }
@@ -168,6 +194,10 @@ void print_text(const std::string& scene, const sim::Still& still) {
   row("rms", image.scores.rms, polygon.scores.rms, 2);
   row("PSNR (dB)", image.scores.psnr_db, polygon.scores.psnr_db, 2);
   row("SSIM", image.scores.ssim, polygon.scores.ssim, 4);
+  const auto edge_rms = [&](const sim::Arm& arm) {
+    return masked_rms(renderings.high.view(), arm.shown.view(), renderings.blocks.edge_band.view()).rms;
+  };
+  row("rms within 2 of an edge", edge_rms(image), edge_rms(polygon), 2);
 }
 
 // Both arms; where a transmitted model shares --bytes with the image, at the best division unless the bits are given.
@@ -202,12 +232,14 @@ int run_compare(Args args) {
     return options.usage_error("--position-bits is of a transmitted model: add --model transmitted");
   if (request.still.coding.masking != jpeg::Tune::psnr && request.still.coding.tables != sim::TableFamily::adapted)
     return options.usage_error("--masking goes with --tables adapted");
+  if (const auto code = read_importance(options, request)) return *code;
   auto source = load_scene(request.scene, options);
   if (!source) return kBadData;
   source->pose(request.frame, kStillFramesPerSecond);
   if (request.still.render.split.find("tessellation") != std::string::npos && source->builtin == nullptr)
     sim::add_coarse_model(source->set);
   request.still.target_bytes = static_cast<uint64_t>(request.bytes);
+  request.still.render.find_blocks = true;
   request.still.render.threads = request.still.coding.threads = options.threads;
   request.still.render.isa = request.still.coding.isa = options.isa;
   const auto size = [](int given, int own) { return static_cast<float>(given > 0 ? given : own); };
