@@ -30,7 +30,9 @@ std::vector<Step> steps_of(const Flow& flow, int left, int top) {
   const auto add = [&](int x, int y) {
     const int at_x = std::min(left + x, flow.x_64.width() - 1), at_y = std::min(top + y, flow.x_64.height() - 1);
     const int32_t x_64 = flow.x_64.row(at_y)[at_x], y_64 = flow.y_64.row(at_y)[at_x];
-    if (x_64 != kWarpNowhere) steps.push_back({x_64 - 64 * at_x, y_64 - 64 * at_y});
+    constexpr int32_t kFar = 1 << 24;  // sums of such steps fit; farther away, or nowhere, is no use
+    const bool is_near = -kFar < x_64 && x_64 < kFar && -kFar < y_64 && y_64 < kFar;
+    if (is_near) steps.push_back({x_64 - 64 * at_x, y_64 - 64 * at_y});
   };
   for (int y = 2; y < 16; y += 4)
     for (int x = 2; x < 16; x += 4) add(x, y);

@@ -126,10 +126,11 @@ Reprojection::Reprojection(const MovedView& from, const MovedView& to, int width
 ReprojectionRow Reprojection::row(int y, int first) const {
   ReprojectionRow row;
   for (int c = 0; c < 4; ++c) {
+    const double unit = c < 2 ? kWarpPhases : 1;  // of x and y, a power of two
     const double at_left = matrix_[c][3] + matrix_[c][1] * y;
-    row.origin[c] = static_cast<float>(first == 0 ? at_left : at_left + matrix_[c][0] * first);
-    row.per_pixel[c] = static_cast<float>(matrix_[c][0]);
-    row.per_depth[c] = static_cast<float>(matrix_[c][2]);
+    row.origin[c] = static_cast<float>(unit * (first == 0 ? at_left : at_left + matrix_[c][0] * first));
+    row.per_pixel[c] = static_cast<float>(unit * matrix_[c][0]);
+    row.per_depth[c] = static_cast<float>(unit * matrix_[c][2]);
   }
   return row;
 }

@@ -135,9 +135,9 @@ TEST_CASE("points in the frame before are equal on every instruction set, inside
       const SomeMap map(state);
       const size_t n = static_cast<size_t>(round % 101), first = static_cast<size_t>(round % 3) * 9;
       // Around the identity: near the row, and beyond the sides of the map.
-      ReprojectionRow row = {{between(state, -9, 9), between(state, -3, 25), between(state, -0.1f, 0.1f), 1.0f},
-                             {between(state, 0.2f, 1.2f), between(state, -0.2f, 0.2f), 0.0f, 0.0f},
-                             {between(state, -4, 4), between(state, -4, 4), between(state, 0.9f, 1.1f), 0.0f}};
+      ReprojectionRow row = {{between(state, -576, 576), between(state, -192, 1600), between(state, -0.1f, 0.1f), 1.0f},
+                             {between(state, 13, 77), between(state, -13, 13), 0.0f, 0.0f},
+                             {between(state, -256, 256), between(state, -256, 256), between(state, 0.9f, 1.1f), 0.0f}};
       if (round % 16 == 7) row.origin[3] = -1.0f;
       std::vector<float> depth(n);
       std::vector<uint32_t> now(n);

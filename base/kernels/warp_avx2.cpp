@@ -13,19 +13,22 @@ namespace {
 
 // ---- Places ----
 
-inline __m256 coordinate(const ReprojectionRow& row, int c, __m256 column, __m256 u) {
-  return _mm256_add_ps(
-      _mm256_add_ps(_mm256_set1_ps(row.origin[c]), _mm256_mul_ps(column, _mm256_set1_ps(row.per_pixel[c]))),
-      _mm256_mul_ps(u, _mm256_set1_ps(row.per_depth[c])));
-}
+// A row's numbers in all lanes.
+struct Terms {
+  __m256 origin[4], per_pixel[4], per_depth[4];
 
-inline __m256i in_64ths(__m256 position, __m256 somewhere) {
-  const __m256 largest = _mm256_set1_ps(262144.0f);
-  const __m256 clamped = _mm256_max_ps(_mm256_min_ps(position, largest), _mm256_sub_ps(_mm256_setzero_ps(), largest));
-  const __m256 rounded =
-      _mm256_floor_ps(_mm256_add_ps(_mm256_mul_ps(clamped, _mm256_set1_ps(64.0f)), _mm256_set1_ps(0.5f)));
-  return _mm256_blendv_epi8(_mm256_set1_epi32(kWarpNowhere), _mm256_cvtps_epi32(rounded),
-                            _mm256_castps_si256(somewhere));
+  explicit Terms(const ReprojectionRow& row) {
+    for (int c = 0; c < 4; ++c) {
+      origin[c] = _mm256_set1_ps(row.origin[c]);
+      per_pixel[c] = _mm256_set1_ps(row.per_pixel[c]);
+      per_depth[c] = _mm256_set1_ps(row.per_depth[c]);
+    }
+  }
+};
+
+inline __m256 coordinate(const Terms& terms, int c, __m256 column, __m256 u) {
+  return _mm256_add_ps(_mm256_add_ps(terms.origin[c], _mm256_mul_ps(column, terms.per_pixel[c])),
+                       _mm256_mul_ps(u, terms.per_depth[c]));
 }
 
 struct Eight {
@@ -33,15 +36,16 @@ struct Eight {
   __m256 u;
 };
 
-inline Eight reproject(const ReprojectionRow& row, __m256 column, __m256 depth) {
+// Of those lanes that are `shown`; the others are nowhere. u may not be a number.
+inline Eight reproject(const Terms& terms, __m256 column, __m256 depth, __m256 shown) {
   const __m256 u = _mm256_sub_ps(_mm256_set1_ps(1.0f), depth);
-  const __m256 w = coordinate(row, 3, column, u);
-  const __m256 x = _mm256_div_ps(coordinate(row, 0, column, u), w);
-  const __m256 y = _mm256_div_ps(coordinate(row, 1, column, u), w);
-  const __m256 before = _mm256_div_ps(coordinate(row, 2, column, u), w);
-  const __m256 numbers = _mm256_and_ps(_mm256_cmp_ps(x, y, _CMP_ORD_Q), _mm256_cmp_ps(before, before, _CMP_ORD_Q));
-  const __m256 somewhere = _mm256_and_ps(_mm256_cmp_ps(w, _mm256_set1_ps(8.6736174e-19f), _CMP_GT_OQ), numbers);
-  return {in_64ths(x, somewhere), in_64ths(y, somewhere), _mm256_and_ps(before, somewhere)};
+  const __m256 w = coordinate(terms, 3, column, u);
+  // Infinite where nothing is: then no position fits 32 bits, and the conversion gives kWarpNowhere.
+  const __m256 somewhere = _mm256_and_ps(_mm256_cmp_ps(w, _mm256_set1_ps(8.6736174e-19f), _CMP_GT_OQ), shown);
+  const __m256 r = _mm256_div_ps(_mm256_set1_ps(1.0f), _mm256_and_ps(w, somewhere));
+  return {_mm256_cvtps_epi32(_mm256_mul_ps(coordinate(terms, 0, column, u), r)),
+          _mm256_cvtps_epi32(_mm256_mul_ps(coordinate(terms, 1, column, u), r)),
+          _mm256_and_ps(_mm256_mul_ps(coordinate(terms, 2, column, u), r), somewhere)};
 }
 
 inline __m256 first_columns() {
@@ -50,12 +54,14 @@ inline __m256 first_columns() {
 
 void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                    float* u_before) {
+  const Terms terms(row);
+  const __m256 all = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
   __m256 column = first_columns();
   const auto eight = [&](const float* z, int32_t* x, int32_t* y, float* u) {
-    const Eight at = reproject(row, column, _mm256_loadu_ps(z));
+    const Eight at = reproject(terms, column, _mm256_loadu_ps(z), all);
     store(x, at.x_64);
     store(y, at.y_64);
-    _mm256_storeu_ps(u, at.u);
+    _mm256_storeu_ps(u, _mm256_and_ps(at.u, _mm256_cmp_ps(at.u, at.u, _CMP_ORD_Q)));
   };
   size_t i = 0;
   for (; i + 8 <= n; i += 8) {
@@ -72,7 +78,7 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
   __builtin_memcpy(u_before + i, last_u, (n - i) * sizeof(float));
 }
 
-// The maximum of equal zeros is its second operand: no -0.
+// The maximum of equal zeros, and of what is not a number, is its second operand: 0.
 inline __m256i depth_code(__m256 u) {
   const __m256 bounded = _mm256_min_ps(_mm256_max_ps(u, _mm256_setzero_ps()), _mm256_set1_ps(1.9921875f));
   return _mm256_srli_epi32(_mm256_castps_si256(bounded), 16);
@@ -136,7 +142,7 @@ void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* su
 
 struct Lookup {
   const int* keys;
-  __m256i width_64, height_64, map_stride;
+  __m256i last_x_64, last_y_64, map_stride;
   ptrdiff_t stride;
 };
 
@@ -147,72 +153,115 @@ inline __m256i belongs(__m256i key, __m256i wanted) {
   return _mm256_cmpeq_epi32(_mm256_min_epu32(from_low, _mm256_set1_epi32(2 * kKeyTolerance)), from_low);
 }
 
-inline __m256i in_range(__m256i position_64, __m256i end_64) {
+// Positions whose nearest pixel is within the map: without a sign, negative ones are beyond any end.
+inline __m256i in_range(__m256i position_64, __m256i last_64) {
   const __m256i near = _mm256_add_epi32(position_64, _mm256_set1_epi32(kWarpPhases / 2));
-  return _mm256_and_si256(_mm256_cmpgt_epi32(near, _mm256_set1_epi32(-1)), _mm256_cmpgt_epi32(end_64, near));
+  return _mm256_cmpeq_epi32(_mm256_min_epu32(near, last_64), near);
 }
 
 inline __m256i ramp() {
   return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-inline size_t count_of(__m256i mask) {
-  return static_cast<size_t>(__builtin_popcount(static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(mask)))));
+// Minus the states of points that are found: of lanes, so far.
+struct Counters {
+  __m256i plain = _mm256_setzero_si256(), inside = _mm256_setzero_si256();
+
+  static size_t sum_of(__m256i counts) {
+    alignas(32) int32_t lanes[8];
+    store(lanes, counts);
+    int64_t sum = 0;
+    for (const int32_t lane : lanes) sum -= lane;
+    return static_cast<size_t>(sum);
+  }
+  WarpCounts counts() const { return {sum_of(plain), sum_of(inside) - sum_of(plain)}; }
+};
+
+// The keys of eight pixels of the map, `inside` it, by their columns and lines.
+inline __m256i keys_at(const Lookup& before, __m256i columns, __m256i lines, __m256i inside) {
+  const __m128i column = _mm256_castsi256_si128(columns), line = _mm256_castsi256_si128(lines);
+  const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(column));
+  const __m256i is_near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(15)), from_first);
+  const __m256i in_line = _mm256_cmpeq_epi32(lines, _mm256_broadcastd_epi32(line));
+  const ptrdiff_t start = _mm_cvtsi128_si32(line) * before.stride + _mm_cvtsi128_si32(column);
+  prefetch(before.keys, start + 4 * before.stride);  // of the next row's edges
+  if (_mm256_movemask_epi8(_mm256_and_si256(inside, _mm256_and_si256(is_near, in_line))) != -1) {
+    const __m256i index = _mm256_add_epi32(_mm256_mullo_epi32(lines, before.map_stride), columns);
+    return _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), before.keys, index, inside, 4);
+  }
+  // A gather takes longer than two permutations; where from_first has bit 3, the second one counts.
+  const auto eight_at = [&](ptrdiff_t i) {
+    return _mm256_permutevar8x32_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(before.keys + start + i)),
+                                       from_first);
+  };
+  const __m256i is_late = _mm256_slli_epi32(from_first, 28);
+  return _mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps(eight_at(0)), _mm256_castsi256_ps(eight_at(8)),
+                                              _mm256_castsi256_ps(is_late)));
 }
 
-// Eight states, and how many are plain and edges.
+// Eight states.
 inline void find_states(const Lookup& before, __m256i x, __m256i y, __m256i wanted, uint8_t* state,
-                        WarpCounts& counts) {
-  const __m256i background = _mm256_cmpeq_epi32(wanted, _mm256_setzero_si256());
-  const __m256i inside =
-      _mm256_andnot_si256(background, _mm256_and_si256(in_range(x, before.width_64), in_range(y, before.height_64)));
-  const __m256i column = _mm256_srai_epi32(x, 6), line = _mm256_srai_epi32(y, 6);
-  const __m256i index = _mm256_add_epi32(_mm256_mullo_epi32(line, before.map_stride), column);
-  const int32_t start = _mm_cvtsi128_si32(_mm256_castsi256_si128(index));
-  const __m256i in_order =
-      _mm256_and_si256(inside, _mm256_cmpeq_epi32(index, _mm256_add_epi32(_mm256_set1_epi32(start), ramp())));
-  // A gather takes long, and most often the eight lie side by side.
-  const __m256i key = _mm256_movemask_epi8(in_order) == -1
-                          ? _mm256_loadu_si256(reinterpret_cast<const __m256i*>(before.keys + start))
-                          : _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), before.keys, index, inside, 4);
-  prefetch(before.keys, start + 4 * before.stride);  // of the next row's edges
+                        Counters& counters) {
+  const __m256i inside = _mm256_and_si256(in_range(x, before.last_x_64), in_range(y, before.last_y_64));
+  const __m256i key = keys_at(before, _mm256_srai_epi32(x, 6), _mm256_srai_epi32(y, 6), inside);
   const __m256i smooth = _mm256_srai_epi32(_mm256_slli_epi32(key, 17), 31);
   const __m256i plain = _mm256_and_si256(smooth, belongs(key, wanted));
-  const __m256i states = _mm256_sub_epi32(_mm256_setzero_si256(), _mm256_add_epi32(plain, inside));
+  const __m256i states = _mm256_abs_epi32(_mm256_add_epi32(plain, inside));
   const __m128i words = _mm_packus_epi32(_mm256_castsi256_si128(states), _mm256_extracti128_si256(states, 1));
   _mm_storel_epi64(reinterpret_cast<__m128i*>(state), _mm_packus_epi16(words, words));
-  const size_t n_plain = count_of(plain);
-  counts.plain += n_plain;
-  counts.edges += count_of(inside) - n_plain;
+  counters.plain = _mm256_add_epi32(counters.plain, plain);
+  counters.inside = _mm256_add_epi32(counters.inside, inside);
 }
 
 inline Lookup lookup_in(const KeyMap& map) {
-  return {reinterpret_cast<const int*>(map.keys), _mm256_set1_epi32(map.width * kWarpPhases),
-          _mm256_set1_epi32(map.height * kWarpPhases), _mm256_set1_epi32(static_cast<int>(map.stride)), map.stride};
+  return {reinterpret_cast<const int*>(map.keys), _mm256_set1_epi32(map.width * kWarpPhases - 1),
+          _mm256_set1_epi32(map.height * kWarpPhases - 1), _mm256_set1_epi32(static_cast<int>(map.stride)), map.stride};
 }
 
 inline void store_nothing(const WarpPlaces& out) {
   store(out.x_64, _mm256_set1_epi32(kWarpNowhere));
   store(out.y_64, _mm256_set1_epi32(kWarpNowhere));
   store(out.wanted, _mm256_setzero_si256());
-  _mm_storel_epi64(reinterpret_cast<__m128i*>(out.state), _mm_setzero_si128());
 }
 
-// Eight at a time by eight(i, out); the last few of them through copies.
-template <class DoEight>
-inline void by_eight(size_t n, const WarpPlaces& out, const DoEight& eight) {
-  size_t i = 0;
-  for (; i + 8 <= n; i += 8) eight(i, {out.x_64 + i, out.y_64 + i, out.state + i, out.wanted + i});
-  if (i == n) return;
+// The states of eight places.
+inline void look_up(const Lookup& before, const WarpPlaces& places, Counters& counters) {
+  const __m256i wanted = load(places.wanted);
+  if (_mm256_testz_si256(wanted, wanted) != 0) {
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(places.state), _mm_setzero_si128());
+    return;
+  }
+  find_states(before, load(places.x_64), load(places.y_64), wanted, places.state, counters);
+}
+
+inline WarpPlaces from(const WarpPlaces& places, size_t i) {
+  return {places.x_64 + i, places.y_64 + i, places.state + i, places.wanted + i};
+}
+
+// Eight at a time: places by place(i, out) a block ahead of their states by look_up(out), which are guessed wrong more
+// often and would wait for all that leads to a place. The last few go through copies.
+template <class Place, class LookUp>
+inline void by_eight(size_t n, const WarpPlaces& out, const Place& place, const LookUp& look_up) {
+  constexpr size_t kBlock = 64;
+  const size_t whole = n & ~size_t{7};
+  for (size_t first = 0; first < whole; first += kBlock) {
+    const size_t end = first + kBlock < whole ? first + kBlock : whole;
+    for (size_t i = first; i < end; i += 8) place(i, from(out, i));
+    for (size_t i = first; i < end; i += 8) look_up(from(out, i));
+  }
+  if (whole == n) return;
   int32_t x[8], y[8];
   uint8_t state[8];
   uint32_t wanted[8];
-  eight(i, {x, y, state, wanted});
-  const size_t rest = n - i;
-  __builtin_memcpy(out.x_64 + i, x, rest * 4);
-  __builtin_memcpy(out.y_64 + i, y, rest * 4);
-  __builtin_memcpy(out.state + i, state, rest);
-  __builtin_memcpy(out.wanted + i, wanted, rest * 4);
+  const WarpPlaces last = {x, y, state, wanted};
+  const size_t rest = n - whole;
+  place(whole, last);
+  for (size_t i = rest; i < 8; ++i) x[i] = kWarpNowhere;
+  look_up(last);
+  __builtin_memcpy(out.x_64 + whole, x, rest * 4);
+  __builtin_memcpy(out.y_64 + whole, y, rest * 4);
+  __builtin_memcpy(out.state + whole, state, rest);
+  __builtin_memcpy(out.wanted + whole, wanted, rest * 4);
 }
 
 // `n` of eight values, then zeros.
@@ -226,25 +275,23 @@ inline __m256i load_some(const void* from, size_t n) {
 WarpCounts find_points(const ReprojectionRow& row, size_t first, const float* depth, const uint32_t* now,
                        const KeyMap& map, size_t n, const WarpPlaces& out) {
   const Lookup before = lookup_in(map);
-  WarpCounts counts = {};
-  by_eight(n, out, [&](size_t i, const WarpPlaces& to) {
+  const Terms terms(row);
+  Counters counters;
+  const auto place = [&](size_t i, const WarpPlaces& to) {
     const __m256i keys = load_some(now + i, n - i);
     const __m256i surface = _mm256_and_si256(keys, _mm256_set1_epi32(static_cast<int>(kKeySurfaceBits)));
     if (_mm256_testz_si256(surface, surface) != 0) return store_nothing(to);
     const __m256 column =
         _mm256_add_ps(_mm256_set1_ps(static_cast<float>(static_cast<int32_t>(first + i))), first_columns());
-    const Eight at = reproject(row, column, _mm256_castsi256_ps(load_some(depth + i, n - i)));
     const __m256i background = _mm256_cmpeq_epi32(surface, _mm256_setzero_si256());
-    const __m256i nowhere = _mm256_set1_epi32(kWarpNowhere);
-    const __m256i x = _mm256_blendv_epi8(at.x_64, nowhere, background);
-    const __m256i y = _mm256_blendv_epi8(at.y_64, nowhere, background);
-    const __m256i wanted = _mm256_andnot_si256(background, _mm256_or_si256(surface, depth_code(at.u)));
-    store(to.x_64, x);
-    store(to.y_64, y);
-    store(to.wanted, wanted);
-    find_states(before, x, y, wanted, to.state, counts);
-  });
-  return counts;
+    const __m256 shown = _mm256_castsi256_ps(_mm256_xor_si256(background, _mm256_set1_epi32(-1)));
+    const Eight at = reproject(terms, column, _mm256_castsi256_ps(load_some(depth + i, n - i)), shown);
+    store(to.x_64, at.x_64);
+    store(to.y_64, at.y_64);
+    store(to.wanted, _mm256_or_si256(surface, depth_code(at.u)));
+  };
+  by_eight(n, out, place, [&](const WarpPlaces& at) { look_up(before, at, counters); });
+  return counters.counts();
 }
 
 // Of sixteen values, or of twice `n`, every second.
@@ -257,21 +304,14 @@ inline __m256i load_seconds(const T* from, size_t n) {
 
 WarpCounts find_half_points(const WarpPlaces& full, const KeyMap& map, size_t n, const WarpPlaces& out) {
   const Lookup before = lookup_in(map);
-  WarpCounts counts = {};
-  by_eight(n, out, [&](size_t i, const WarpPlaces& to) {
-    const __m256i wanted = load_seconds(full.wanted + 2 * i, n - i);
-    const __m256i x = _mm256_srai_epi32(load_seconds(full.x_64 + 2 * i, n - i), 1);
-    const __m256i y = _mm256_srai_epi32(load_seconds(full.y_64 + 2 * i, n - i), 1);
-    store(to.x_64, x);
-    store(to.y_64, y);
-    store(to.wanted, wanted);
-    if (_mm256_testz_si256(wanted, wanted) != 0) {
-      _mm_storel_epi64(reinterpret_cast<__m128i*>(to.state), _mm_setzero_si128());
-      return;
-    }
-    find_states(before, x, y, wanted, to.state, counts);
-  });
-  return counts;
+  Counters counters;
+  const auto place = [&](size_t i, const WarpPlaces& to) {
+    store(to.x_64, _mm256_srai_epi32(load_seconds(full.x_64 + 2 * i, n - i), 1));
+    store(to.y_64, _mm256_srai_epi32(load_seconds(full.y_64 + 2 * i, n - i), 1));
+    store(to.wanted, load_seconds(full.wanted + 2 * i, n - i));
+  };
+  by_eight(n, out, place, [&](const WarpPlaces& at) { look_up(before, at, counters); });
+  return counters.counts();
 }
 
 // ---- What is smooth ----

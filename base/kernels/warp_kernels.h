@@ -8,7 +8,7 @@ namespace pac {
 
 // One row of pixels in homogeneous coordinates of the earlier window. With u = 1 - depth (window z), pixel i has
 //   c = (origin[c] + i * per_pixel[c]) + u * per_depth[c]      in float, in this order, for c = x, y, u, w
-// and lay at (x / w, y / w) pixels, at 1 - depth = u / w. The terms of w have one sign, so that nothing cancels.
+// and lay at (x / w, y / w) in 1/64 pixel, at 1 - depth = u / w. The terms of w have one sign, so that nothing cancels.
 struct ReprojectionRow {
   float origin[4], per_pixel[4], per_depth[4];
 };
@@ -48,15 +48,16 @@ struct WarpCounts {
 };
 
 struct WarpKernels {
-  // Positions of n pixels, any n >= 0: x_64 = floor(64 x / w + 0.5), clamped to +-2^24 before (y_64 alike), and
-  // u_before = u / w. Where w <= 2^-60 or any is not a number: kWarpNowhere in x_64 and y_64, 0 in u_before. Exactly n
-  // values of each array are touched.
+  // Positions of n pixels, any n >= 0. With r = 1 / w, x_64 = x * r rounded to nearest, halves to even, or kWarpNowhere
+  // where that is not a number or does not fit (y_64 alike), and u_before = u * r, or 0 where that is not a number.
+  // Where w <= 2^-60 or is not a number: kWarpNowhere in x_64 and y_64, 0 in u_before. Exactly n values of each array
+  // are touched.
   void (*reproject_row)(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
                         float* u_before);
 
   // keys[i] = surface << 16 | code, where the surface is surfaces[id[i]], 0 beyond the table of n_surfaces >= 1, or
   // without a table (surfaces null) 1 for all ids but 0; and the code the upper 16 bits of u = min(max(1 - depth[i],
-  // 0), 1.9921875) in float, which are below 2^14. 0 where the surface is (modulo 2^16).
+  // 0), 1.9921875) in float, which are below 2^14; of what is not a number 0. 0 where the surface is (modulo 2^16).
   void (*surface_keys_row)(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces,
                            size_t n, uint32_t* keys);
 

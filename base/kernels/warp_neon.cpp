@@ -16,25 +16,23 @@ inline float32x4_t coordinate(const ReprojectionRow& row, int c, float32x4_t col
   return vaddq_f32(across, vmulq_f32(u, vdupq_n_f32(row.per_depth[c])));
 }
 
-inline int32x4_t in_64ths(float32x4_t position, uint32x4_t somewhere) {
-  const float32x4_t largest = vdupq_n_f32(262144.0f);
-  const float32x4_t clamped = vmaxq_f32(vminq_f32(position, largest), vnegq_f32(largest));
-  const float32x4_t rounded = vrndmq_f32(vaddq_f32(vmulq_f32(clamped, vdupq_n_f32(64.0f)), vdupq_n_f32(0.5f)));
-  return vbslq_s32(somewhere, vcvtq_s32_f32(rounded), vdupq_n_s32(kWarpNowhere));
+// Comparisons with what is not a number fail; -2^31 is kWarpNowhere.
+inline int32x4_t nearest(float32x4_t position_64, uint32x4_t somewhere) {
+  const uint32x4_t fits = vandq_u32(vcaltq_f32(position_64, vdupq_n_f32(2147483648.0f)), somewhere);
+  return vbslq_s32(fits, vcvtnq_s32_f32(position_64), vdupq_n_s32(kWarpNowhere));
 }
 
 inline void reproject(const ReprojectionRow& row, float32x4_t column, float32x4_t depth, int32_t* x_64, int32_t* y_64,
                       float* u_before) {
   const float32x4_t u = vsubq_f32(vdupq_n_f32(1.0f), depth);
   const float32x4_t w = coordinate(row, 3, column, u);
-  const float32x4_t x = vdivq_f32(coordinate(row, 0, column, u), w);
-  const float32x4_t y = vdivq_f32(coordinate(row, 1, column, u), w);
-  const float32x4_t before = vdivq_f32(coordinate(row, 2, column, u), w);
-  const uint32x4_t numbers = vandq_u32(vandq_u32(vceqq_f32(x, x), vceqq_f32(y, y)), vceqq_f32(before, before));
-  const uint32x4_t somewhere = vandq_u32(vcgtq_f32(w, vdupq_n_f32(8.6736174e-19f)), numbers);
-  vst1q_s32(x_64, in_64ths(x, somewhere));
-  vst1q_s32(y_64, in_64ths(y, somewhere));
-  vst1q_f32(u_before, vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(before), somewhere)));
+  const uint32x4_t somewhere = vcgtq_f32(w, vdupq_n_f32(8.6736174e-19f));
+  const float32x4_t r = vdivq_f32(vdupq_n_f32(1.0f), w);
+  const float32x4_t before = vmulq_f32(coordinate(row, 2, column, u), r);
+  vst1q_s32(x_64, nearest(vmulq_f32(coordinate(row, 0, column, u), r), somewhere));
+  vst1q_s32(y_64, nearest(vmulq_f32(coordinate(row, 1, column, u), r), somewhere));
+  const uint32x4_t is_number = vandq_u32(somewhere, vceqq_f32(before, before));
+  vst1q_f32(u_before, vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(before), is_number)));
 }
 
 // Columns from `start` on.

@@ -6,15 +6,11 @@
 namespace pac {
 namespace {
 
-constexpr float kLargest = 262144.0f;         // 2^18 pixels: 2^24 in 1/64
 constexpr float kSmallestW = 8.6736174e-19f;  // 2^-60
 
-float clamped(float value) {
-  return value < -kLargest ? -kLargest : value > kLargest ? kLargest : value;
-}
-
-int32_t in_64ths(float position) {
-  return static_cast<int32_t>(std::floor(clamped(position) * 64.0f + 0.5f));
+int32_t nearest(float position_64) {
+  const bool fits = position_64 >= -2147483648.0f && position_64 < 2147483648.0f;
+  return fits ? static_cast<int32_t>(std::nearbyint(position_64)) : kWarpNowhere;
 }
 
 struct Place {
@@ -26,10 +22,9 @@ Place reprojected(const ReprojectionRow& row, size_t i, float depth) {
   const float u = 1.0f - depth, column = static_cast<float>(static_cast<int32_t>(i));
   float at[4];
   for (int c = 0; c < 4; ++c) at[c] = (row.origin[c] + column * row.per_pixel[c]) + u * row.per_depth[c];
-  const float x = at[0] / at[3], y = at[1] / at[3], before = at[2] / at[3];
-  const bool somewhere = at[3] > kSmallestW && x == x && y == y && before == before;
-  if (!somewhere) return {kWarpNowhere, kWarpNowhere, 0.0f};
-  return {in_64ths(x), in_64ths(y), before};
+  if (!(at[3] > kSmallestW)) return {kWarpNowhere, kWarpNowhere, 0.0f};
+  const float r = 1.0f / at[3], before = at[2] * r;
+  return {nearest(at[0] * r), nearest(at[1] * r), before == before ? before : 0.0f};
 }
 
 void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int32_t* x_64, int32_t* y_64,
@@ -43,8 +38,8 @@ void reproject_row(const ReprojectionRow& row, const float* depth, size_t n, int
 }
 
 uint32_t depth_code(float u) {
-  const float bounded = u < 0.0f ? 0.0f : u > 1.9921875f ? 1.9921875f : u;
-  return std::bit_cast<uint32_t>(bounded + 0.0f) >> 16;
+  const float bounded = u > 0.0f ? (u < 1.9921875f ? u : 1.9921875f) : 0.0f;
+  return std::bit_cast<uint32_t>(bounded) >> 16;
 }
 
 void surface_keys_row(const uint32_t* id, const float* depth, const uint32_t* surfaces, size_t n_surfaces, size_t n,
@@ -63,8 +58,13 @@ bool apart(uint32_t a, uint32_t b) {
   return a - b + uint32_t{kKeyTolerance} > 2 * uint32_t{kKeyTolerance};
 }
 
+// floor((x + 32) / 64), of any x.
+int32_t nearest_pixel(int32_t position_64) {
+  return (position_64 >> 6) + (position_64 >> 5 & 1);
+}
+
 uint8_t state_of(const KeyMap& before, int32_t x_64, int32_t y_64, uint32_t wanted) {
-  const int32_t near_x = (x_64 + kWarpPhases / 2) >> 6, near_y = (y_64 + kWarpPhases / 2) >> 6;
+  const int32_t near_x = nearest_pixel(x_64), near_y = nearest_pixel(y_64);
   if (wanted == 0 || near_x < 0 || near_y < 0 || near_x >= before.width || near_y >= before.height) return kWarpAbsent;
   const uint32_t key = before.keys[(y_64 >> 6) * before.stride + (x_64 >> 6)];
   return (key & kKeySmooth) != 0 && !apart(key & kKeyBits, wanted) ? kWarpPlain : kWarpEdge;

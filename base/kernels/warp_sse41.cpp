@@ -19,22 +19,16 @@ inline __m128 coordinate(const ReprojectionRow& row, int c, __m128 column, __m12
                     _mm_mul_ps(u, _mm_set1_ps(row.per_depth[c])));
 }
 
-inline __m128i in_64ths(__m128 position, __m128 somewhere) {
-  const __m128 largest = _mm_set1_ps(262144.0f);
-  const __m128 clamped = _mm_max_ps(_mm_min_ps(position, largest), _mm_sub_ps(_mm_setzero_ps(), largest));
-  const __m128 rounded = _mm_floor_ps(_mm_add_ps(_mm_mul_ps(clamped, _mm_set1_ps(64.0f)), _mm_set1_ps(0.5f)));
-  return _mm_blendv_epi8(_mm_set1_epi32(kWarpNowhere), _mm_cvtps_epi32(rounded), _mm_castps_si128(somewhere));
-}
-
 inline Quad reproject(const ReprojectionRow& row, __m128 column, __m128 depth) {
   const __m128 u = _mm_sub_ps(_mm_set1_ps(1.0f), depth);
   const __m128 w = coordinate(row, 3, column, u);
-  const __m128 x = _mm_div_ps(coordinate(row, 0, column, u), w);
-  const __m128 y = _mm_div_ps(coordinate(row, 1, column, u), w);
-  const __m128 before = _mm_div_ps(coordinate(row, 2, column, u), w);
-  const __m128 numbers = _mm_and_ps(_mm_cmpord_ps(x, y), _mm_cmpord_ps(before, before));
-  const __m128 somewhere = _mm_and_ps(_mm_cmpgt_ps(w, _mm_set1_ps(8.6736174e-19f)), numbers);
-  return {in_64ths(x, somewhere), in_64ths(y, somewhere), _mm_and_ps(before, somewhere)};
+  // Infinite where nothing is: then no position fits 32 bits, and the conversion gives kWarpNowhere.
+  const __m128 somewhere = _mm_cmpgt_ps(w, _mm_set1_ps(8.6736174e-19f));
+  const __m128 r = _mm_div_ps(_mm_set1_ps(1.0f), _mm_and_ps(w, somewhere));
+  const __m128 before = _mm_mul_ps(coordinate(row, 2, column, u), r);
+  return {_mm_cvtps_epi32(_mm_mul_ps(coordinate(row, 0, column, u), r)),
+          _mm_cvtps_epi32(_mm_mul_ps(coordinate(row, 1, column, u), r)),
+          _mm_and_ps(before, _mm_and_ps(somewhere, _mm_cmpord_ps(before, before)))};
 }
 
 // Columns from `first` on.
