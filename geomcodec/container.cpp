@@ -22,22 +22,23 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
-enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2 };
+enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2, kRanked = 4 };
 
 // Version 4 is there for tables: without any it would be version 3. Version 5 says how positions are coded that tables
-// do not code. Version 6 is there for degenerate faces and tells both.
-void parse_tables(ByteReader& reader, uint8_t version, Header& header) {
+// do not code. Version 6 is there for degenerate faces and ranked points and tells all of it.
+void parse_tables(ByteReader& reader, uint8_t version, uint8_t& features, Header& header) {
   constexpr uint32_t kMayBe =
       1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
   header.tables = reader.u8();
-  if (version == kVersionWithDegenerate) {
-    const uint8_t features = reader.u8();
-    if ((features & kHasDegenerate) == 0 || (features & ~(kHasDegenerate | kChooses)) != 0)
-      reader.fail(Error::corrupt, "features are unknown, or faces are not degenerate");
+  if (version == kVersionWithFeatures) {
+    features = reader.u8();
+    if ((features & (kHasDegenerate | kRanked)) == 0 || (features & ~(kHasDegenerate | kChooses | kRanked)) != 0)
+      reader.fail(Error::corrupt, "features are unknown, or none that needs this version");
     header.chooses = (features & kChooses) != 0;
+    header.ranked = (features & kRanked) != 0;
   }
-  if ((header.tables == 0 && version == kVersionWithTables) || (header.by_tables(kPositions) && header.chooses) ||
-      (header.tables & ~kMayBe) != 0)
+  if ((header.tables == 0 && version == kVersionWithTables) ||
+      (header.by_tables(kPositions) && (header.chooses || header.ranked)) || (header.tables & ~kMayBe) != 0)
     reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
 }
 
@@ -78,13 +79,13 @@ void parse_attributes(ByteReader& reader, uint8_t flags, Header& header) {
     reader.fail(Error::corrupt, "grid of the texture is not finite");
 }
 
-void parse_counts(ByteReader& reader, uint8_t version, Header& header) {
+void parse_counts(ByteReader& reader, uint8_t features, Header& header) {
   header.n_used_vertices = reader.count();
   header.n_split_vertices = reader.count();
   header.n_isolated_vertices = reader.count();
   header.n_faces = reader.count();
   const uint64_t n_corners = uint64_t{3} * header.n_faces + reader.count();
-  if (version == kVersionWithDegenerate) {
+  if ((features & kHasDegenerate) != 0) {
     header.n_degenerate = reader.count();
     if (header.n_degenerate == 0 || header.n_degenerate >= header.n_faces)
       reader.fail(Error::corrupt, "no face or all of them are degenerate");
@@ -173,7 +174,9 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
   out.push_back(header.version());
   out.push_back(flags);
   if (header.version() != kVersion) out.push_back(header.tables);
-  if (header.n_degenerate > 0) out.push_back(static_cast<uint8_t>(kHasDegenerate | (header.chooses ? kChooses : 0)));
+  if (header.version() == kVersionWithFeatures)
+    out.push_back(static_cast<uint8_t>((header.n_degenerate > 0 ? kHasDegenerate : 0) |
+                                       (header.chooses ? kChooses : 0) | (header.ranked ? kRanked : 0)));
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
@@ -194,7 +197,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   for (const uint8_t expected : kMagic)
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
   const uint8_t version = reader.u8();
-  if ((version < kVersion || version > kVersionWithDegenerate) && reader.ok())
+  if ((version < kVersion || version > kVersionWithFeatures) && reader.ok())
     return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)
@@ -206,13 +209,15 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   header.constant_color = (flags & kConstantColor) != 0;
   header.trained = (flags & kTrained) != 0;
   header.chooses = version == kVersionThatChooses;
-  if (version != kVersion) parse_tables(reader, version, header);
+  uint8_t features = 0;
+  if (version != kVersion) parse_tables(reader, version, features, header);
   parse_grid(reader, flags, header);
   parse_attributes(reader, flags, header);
   if ((flags & kHasFaceValues) != 0) parse_face_values(reader, header);
-  parse_counts(reader, version, header);
+  parse_counts(reader, features, header);
   if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
   if (header.chooses && !header.has(kPositions)) reader.fail(Error::corrupt, "positions that are not there choose");
+  if (header.ranked && !header.has(kConnectivity)) reader.fail(Error::corrupt, "points without faces are ranked");
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;

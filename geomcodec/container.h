@@ -11,7 +11,7 @@
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithDegenerate = 6;
+inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithFeatures = 6;
 
 enum Section : uint32_t {
   kConnectivity,
@@ -49,14 +49,15 @@ struct Header {
   std::array<uint32_t, kSections> section_bytes = {};
   uint8_t tables = 0;    // bit s: section s is coded by tables; only the first six but seams may be
   bool chooses = false;  // positions, not coded by tables: a symbol tells what residuals start from
+  bool ranked = false;   // positions, not coded by tables: in the order of point_order.h
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
   uint8_t version() const {
-    return n_degenerate > 0 ? kVersionWithDegenerate
-           : chooses        ? kVersionThatChooses
-           : tables != 0    ? kVersionWithTables
-                            : kVersion;
+    return n_degenerate > 0 || ranked ? kVersionWithFeatures
+           : chooses                  ? kVersionThatChooses
+           : tables != 0              ? kVersionWithTables
+                                      : kVersion;
   }
   bool by_tables(Section section) const { return (tables >> section & 1) != 0; }
   // Whether the fields above leave anything for a section to say.

@@ -8,6 +8,7 @@
 #include "geomcodec/face_values.h"
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
+#include "geomcodec/point_order.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
 #include "geomcodec/table_positions.h"
@@ -88,16 +89,25 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
                              const Seams& seams, QuantizedMesh& mesh) {
   const Header& header = stream.header;
   const uint32_t n_positions = header.n_points() + header.n_isolated_vertices;
-  auto positions =
-      header.by_tables(kPositions)
-          ? decode_positions_by_tables(stream.section[kPositions], stencils, n_positions, header.position_bits)
-          : decode_positions(stream.section[kPositions], points, stencils, n_positions, header.position_bits,
-                             header.trained, header.chooses);
+  const auto adaptive = [&](const Topology& topology, const Stencils& its_stencils) {
+    return decode_positions(stream.section[kPositions], topology, its_stencils, n_positions, header.position_bits,
+                            header.trained, header.chooses);
+  };
+  const std::vector<uint32_t> rank = header.ranked ? rank_points(points, stencils) : std::vector<uint32_t>{};
+  const auto decode_ranked = [&] {
+    const Topology topology = renumbered(points, rank);
+    return adaptive(topology, Stencils(topology));
+  };
+  auto positions = header.by_tables(kPositions) ? decode_positions_by_tables(stream.section[kPositions], stencils,
+                                                                             n_positions, header.position_bits)
+                   : header.ranked              ? decode_ranked()
+                                                : adaptive(points, stencils);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
-    const bool used = v < header.n_used_vertices;
-    const Position& position = (*positions)[used ? seams.vertex_point[v] : v - header.n_split_vertices];
+    uint32_t point = v < header.n_used_vertices ? seams.vertex_point[v] : v - header.n_split_vertices;
+    if (point < rank.size()) point = rank[point];
+    const Position& position = (*positions)[point];
     std::copy(position.begin(), position.end(), mesh.vertices[v].position);
   }
   return {};
@@ -131,7 +141,7 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
   const AttributeMesh attributes{points, stencils, seams.sibling};
   // Isolated vertices are a claim of the header until their positions are read: only as many as the faces have shown.
   const bool tables = header.by_tables(kPositions);
-  const bool together = header.has(kColors) && header.by_tables(kColors) == tables &&
+  const bool together = header.has(kColors) && header.by_tables(kColors) == tables && !header.ranked &&
                         header.n_isolated_vertices <= header.n_used_vertices;
   if (together) {
     mesh.vertices.assign(header.n_vertices(), blank_vertex(header));

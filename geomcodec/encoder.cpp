@@ -9,6 +9,7 @@
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/mesh_check.h"
+#include "geomcodec/point_order.h"
 #include "geomcodec/position_coder.h"
 #include "geomcodec/position_weights.h"
 #include "geomcodec/positions.h"
@@ -170,33 +171,71 @@ void encode_attributes(const Header& header, const AttributeMesh& mesh, const Wa
     sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits, header.by_tables(kTexcoords));
 }
 
-// Whether it pays to code positions adaptively that tables code in so many bytes: where residuals that choose what they
-// start from take a twentieth less, as on scans, and a twentieth less than by tables.
-bool choosing_pays(const Walked& walked, const Stencils& stencils, std::span<const Position> positions, int bits,
-                   bool trained, size_t bytes_by_tables) {
-  const auto estimate = [&](bool chooses) {
-    return estimate_positions(walked.points, stencils, positions, bits, trained, chooses);
-  };
-  const uint64_t choosing = estimate(true);
-  return 20 * choosing < 19 * 8 * uint64_t{bytes_by_tables} && 20 * choosing < 19 * estimate(false);
+// The mesh with its points in the other order.
+struct Ranked {
+  std::vector<uint32_t> rank;
+  Topology topology;
+  Stencils stencils;
+  std::vector<Position> positions;
+
+  Ranked(const Topology& walked, const Stencils& walked_stencils, std::span<const Position> given)
+      : rank(rank_points(walked, walked_stencils)),
+        topology(renumbered(walked, rank)),
+        stencils(topology),
+        positions(given.begin(), given.end()) {
+    for (size_t point = 0; point < rank.size(); ++point) positions[rank[point]] = given[point];
+  }
+};
+
+// Whether it pays to code positions adaptively and ranked that tables code in so many bytes: where residuals that
+// choose what they start from take a twentieth less, as on scans, and a twentieth less than by tables.
+bool choosing_pays(const Walked& walked, const Stencils& stencils, std::span<const Position> positions,
+                   const Ranked& ranked, int bits, bool trained, size_t bytes_by_tables) {
+  const uint64_t choosing = estimate_positions(ranked.topology, ranked.stencils, ranked.positions, bits, trained, true);
+  return 20 * choosing < 19 * 8 * uint64_t{bytes_by_tables} &&
+         20 * choosing < 19 * estimate_positions(walked.points, stencils, positions, bits, trained, false);
 }
 
-void encode_positions_of(const Walked& walked, const Stencils& stencils, const EncodeOptions& options, Header& header,
-                         std::vector<uint8_t>& section) {
+void take_positions(PositionSection coded, bool ranked, Header& header, std::vector<uint8_t>& section) {
+  section = std::move(coded.bytes);
+  header.chooses = coded.chooses;
+  header.ranked = ranked;
+}
+
+// What telling it takes in the header, and a decoder some time: it should gain a little more.
+constexpr size_t kRankedBytes = 8;
+
+void encode_positions_of(const Walked& walked, const Stencils& stencils, const EncodeOptions& options,
+                         size_t connectivity_bytes, Header& header, std::vector<uint8_t>& section) {
   const std::vector<Position> positions = positions_of(walked);
   const int bits = header.position_bits;
   if (header.by_tables(kPositions)) {
     section = encode_positions_by_tables(stencils, positions, bits);
-    if (options.effort == Effort::fast ||
-        !choosing_pays(walked, stencils, positions, bits, options.trained_priors, section.size()))
-      return;
+    if (options.effort == Effort::fast) return;
+    const Ranked ranked(walked.points, stencils, positions);
+    if (!choosing_pays(walked, stencils, positions, ranked, bits, options.trained_priors, section.size())) return;
     header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
     header.trained = options.trained_priors;
+    return take_positions(
+        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, false), true, header,
+        section);
   }
-  PositionSection coded =
-      encode_positions(walked.points, stencils, positions, bits, header.trained, options.effort == Effort::best);
-  section = std::move(coded.bytes);
-  header.chooses = coded.chooses;
+  const bool thorough = options.effort == Effort::best;
+  PositionSection coded = encode_positions(walked.points, stencils, positions, bits, header.trained, thorough);
+  // Where the walk has little to tell and choosing takes hardly less, as on regular meshes, the other order seldom
+  // gains.
+  const bool irregular = 8 * connectivity_bytes > walked.points.n_vertices;
+  if (header.n_faces > 0 && (thorough || (irregular && coded.choosing_bits > 0))) {
+    const Ranked ranked(walked.points, stencils, positions);
+    if (!thorough &&
+        50 * estimate_choosing(ranked.topology, ranked.stencils, ranked.positions, bits) > 49 * coded.choosing_bits)
+      return take_positions(std::move(coded), false, header, section);
+    PositionSection other =
+        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, thorough);
+    if (other.bytes.size() + kRankedBytes < coded.bytes.size())
+      return take_positions(std::move(other), true, header, section);
+  }
+  take_positions(std::move(coded), false, header, section);
 }
 
 // Positions over points, all else over vertices; without seams these are the same mesh.
@@ -204,7 +243,7 @@ void encode_vertices(const EncodeOptions& options, Header& header, const Walked&
   if (!header.has(kPositions)) return;
   {
     const Stencils stencils(walked.points);
-    encode_positions_of(walked, stencils, options, header, sections[kPositions]);
+    encode_positions_of(walked, stencils, options, sections[kConnectivity].size(), header, sections[kPositions]);
     if (header.n_split_vertices == 0)
       return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
   }

@@ -139,16 +139,24 @@ Choice choose_prediction(Trials& trials) {
 }
 
 // Exact candidates, repetition, choosing. Estimates tell where choosing is better by far and where the others cannot
-// pay; else they are coded, as positions that repeat or are hit exactly take other sums than estimates say.
-void choose_candidates(Trials& trials, Choice& best) {
+// pay; else they are coded, as positions that repeat or are hit exactly take other sums than estimates say. Returns
+// the bits that choosing is estimated to take if that is a twenty-fifth less, else 0.
+uint64_t choose_candidates(Trials& trials, Choice& best) {
   PositionWeights with_exact = best.weights, choosing = best.weights;
   with_exact.exact = choosing.exact = choosing.chooses = true;
   const uint32_t period = find_period(trials.positions);
   const bool codes_all = period != 0 || trials.codes_all;
   Choice chooses = estimated(trials, choosing);
+  const bool gains = period == 0 && 25 * chooses.estimate < 24 * best.estimate;
+  if (gains && (choosing.customized || choosing.lifted)) {  // single parallelograms may be better without
+    Choice plainly = estimated(trials, {.exact = true, .chooses = true});
+    if (plainly.estimate < chooses.estimate) chooses = std::move(plainly);
+    choosing = chooses.weights;
+  }
+  const uint64_t choosing_bits = gains ? chooses.estimate : 0;
   if (!codes_all && 50 * chooses.estimate < 49 * best.estimate) {
     best = std::move(chooses);
-    return;
+    return choosing_bits;
   }
   const auto try_weights = [&](const PositionWeights& weights) {
     Choice other{weights, 0, {}};
@@ -164,6 +172,7 @@ void choose_candidates(Trials& trials, Choice& best) {
   }
   choosing.period = best.weights.period;
   if (tries_choosing) try_weights(choosing);
+  return choosing_bits;
 }
 
 }  // namespace
@@ -172,13 +181,20 @@ PositionSection encode_positions(const Topology& topology, const Stencils& stenc
                                  int bits, bool trained, bool codes_all) {
   Trials trials(topology, stencils, given, bits, trained, codes_all);
   Choice best = choose_prediction(trials);
-  choose_candidates(trials, best);
+  const uint64_t choosing_bits = choose_candidates(trials, best);
   const uint64_t raw_bits = uint64_t{3} * static_cast<uint64_t>(bits) * given.size();
   const bool raw = (trials.n_windows == 1 || !best.sample.empty() || 10 * best.estimate > 9 * raw_bits) &&
                    coded_bits(trials, best) > raw_bits;
   if (raw) best.weights = {.raw = true};
   const bool is_whole = trials.n_windows == 1 && !raw;
-  return {is_whole ? std::move(best.sample) : trials.encode_all(best.weights), best.weights.chooses};
+  return {is_whole ? std::move(best.sample) : trials.encode_all(best.weights), best.weights.chooses,
+          best.weights.chooses ? choosing_bits : 0};
+}
+
+uint64_t estimate_choosing(const Topology& topology, const Stencils& stencils, std::span<const Position> given,
+                           int bits) {
+  Trials trials(topology, stencils, given, bits, false, false);
+  return trials.estimate({.exact = true, .chooses = true});
 }
 
 uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> given,

@@ -18,12 +18,15 @@ using Position = std::array<uint16_t, 3>;
 // of the isolated vertices. codes_all: whatever may pay is coded, else most of it only estimated (size_estimator.h).
 struct PositionSection {
   std::vector<uint8_t> bytes;
-  bool chooses = false;  // residuals choose what they start from: the stream's version has to say so
+  bool chooses = false;        // residuals choose what they start from: the stream's version has to say so
+  uint64_t choosing_bits = 0;  // by estimate, where choosing takes much less than not; else 0
 };
 PositionSection encode_positions(const Topology& topology, const Stencils& stencils,
                                  std::span<const Position> positions, int bits, bool trained, bool codes_all);
-// About how many bits all positions take, from a sample, with no shares: residuals start from the prediction, or
-// choose.
+// About how many bits all positions take that choose with no shares, by estimate from a sample.
+uint64_t estimate_choosing(const Topology& topology, const Stencils& stencils, std::span<const Position> positions,
+                           int bits);
+// The same by coding the sample: residuals start from the prediction, or choose.
 uint64_t estimate_positions(const Topology& topology, const Stencils& stencils, std::span<const Position> positions,
                             int bits, bool trained, bool chooses);
 

@@ -54,19 +54,22 @@ TEST_CASE("streams are the same bytes on every platform and compiler") {
       for (const uint8_t byte : by_tables) tables.add(byte);
     }
   }
-  REQUIRE(fnv.hash() == 0xa4bb4e264146d810u);
-  REQUIRE(trained.hash() == 0x5bb65f26d28b3cdeu);
-  REQUIRE(balanced.hash() == 0x4c4c9896d673c9a0u);
-  REQUIRE(tables.hash() == 0xb6f6d17da0d4a3b7u);
+  REQUIRE(fnv.hash() == 0x024fee5000f47a13u);
+  REQUIRE(trained.hash() == 0xb14bb8b310685852u);
+  REQUIRE(balanced.hash() == 0x74aef81cfe971d49u);
+  REQUIRE(tables.hash() == 0x969e38b2183fcf96u);
 }
 
 TEST_CASE("choosing predictions by estimates costs next to nothing") {
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.vertices.size() >= 16384) continue;  // by tables
-    const size_t by_estimates = encode(entry.mesh).value().size();
-    const size_t by_coding = encode(entry.mesh, {.effort = Effort::best}).value().size();
+    const std::vector<uint8_t> by_estimates = encode(entry.mesh).value();
+    const std::vector<uint8_t> by_coding = encode(entry.mesh, {.effort = Effort::best}).value();
+    const auto version = [](const std::vector<uint8_t>& bytes) { return pac::geomcodec::read_info(bytes)->version; };
+    // Version 6 may be there for points in another order, which the default tries only where it is likely to gain.
+    const size_t allowed = version(by_estimates) == version(by_coding) ? 500 : 4;
     CAPTURE(entry.name);
-    REQUIRE(500 * by_estimates <= 501 * by_coding);
+    REQUIRE(allowed * by_estimates.size() <= (allowed + 1) * by_coding.size());
   }
 }
 
@@ -142,10 +145,18 @@ TEST_CASE("a large scan, whose triangles cut a grid either way, is not coded by 
     }
   }
   const std::vector<uint8_t> balanced = encode(scan).value(), fast = encode(scan, {.effort = Effort::fast}).value();
-  REQUIRE(pac::geomcodec::read_info(balanced)->version == 5);
+  REQUIRE(pac::geomcodec::read_info(balanced)->version == 6);
   REQUIRE(pac::geomcodec::read_info(fast)->version == 4);
   REQUIRE(10 * balanced.size() < 9 * fast.size());
   REQUIRE(pac::test::same(decode(balanced).value(), decode(fast).value()));
+}
+
+// A surface that rounding leaves few equal steps of, whose triangles were decimated: points of any valence.
+TEST_CASE("an irregular mesh has its points coded in the order of what predicts them") {
+  const QuantizedMesh mesh = pac::test::irregular_mesh(40);
+  const std::vector<uint8_t> best = encode(mesh, {.effort = Effort::best}).value();
+  REQUIRE(pac::geomcodec::read_info(best)->version == 6);
+  REQUIRE(pac::test::same(decode(best).value(), pac::geomcodec::reorder(mesh)));
 }
 
 // A guard against silent loss of compression; FORMAT.md's version must change before these may.

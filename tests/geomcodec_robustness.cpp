@@ -175,7 +175,7 @@ TEST_CASE("each header field at its limit and one past it") {
       {"magic", magic, Error::corrupt, "not a PGC geometry stream"},
       {"version", version, Error::unsupported, "version of the stream is unknown"},
       {"choosing without a vertex", choosing_nothing, Error::corrupt, "positions that are not there choose"},
-      {"unknown features", unknown_features, Error::corrupt, "features are unknown, or faces are not degenerate"},
+      {"unknown features", unknown_features, Error::corrupt, "features are unknown, or none that needs this version"},
       {"all faces degenerate", all_degenerate, Error::corrupt, "no face or all of them are degenerate"},
       {"choosing by tables", choosing_by_tables, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,

@@ -299,11 +299,12 @@ class Header(Fields):  # section 2
         self.flags, self.at, self.b = b[4], 5, b
         self.chooses = b[3] == 5
         self.tables = self.byte() if b[3] > 3 else 0
+        features = self.byte() if b[3] == 6 else 0
         if b[3] == 6:
-            features = self.byte()
-            assert features in (1, 3)
-            self.chooses = features == 3
-        assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if self.chooses else 0x3D) == 0
+            assert features & 5 and features < 8
+            self.chooses = features & 2 > 0
+        self.ranked = features & 4 > 0
+        assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if self.chooses or self.ranked else 0x3D) == 0
         self.bits = self.byte()
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
@@ -319,8 +320,9 @@ class Header(Fields):  # section 2
         self.points, self.vertices = self.used - self.split, self.used + self.isolated
         extra = self.varint()
         self.corners, self.triangles = extra + 3 * self.faces, extra == 0
-        self.degenerate = self.varint() if b[3] == 6 else 0
-        assert b[3] != 6 or 0 < self.degenerate < self.faces
+        self.degenerate = self.varint() if features & 1 else 0
+        assert not features & 1 or 0 < self.degenerate < self.faces
+        assert not self.ranked or self.faces
         self.highest = self.varint()
         self.color = None
         if self.flags & 2:
@@ -688,14 +690,83 @@ class Stencil:  # section 6; vertex: per corner; vertices below v are known
         return 2 * at(v - 1) if v else 0
 
 
+def rank_points(mesh, count):  # section 17
+    at, rank, support, waiting = mesh.vertex, {}, [0] * count, [[], [], [], []]
+    around = [[] for _ in range(count)]
+    for corner, point in enumerate(at[: mesh.walked]):
+        around[point].append(corner)
+
+    def size(corner):
+        return mesh.faces[mesh.face_of[corner]][1]
+
+    def known(*corners):
+        return all(at[c] in rank for c in corners)
+
+    def put(point, level):
+        support[point] = level
+        waiting[level].append(point)
+
+    def supported(corner):
+        point = at[corner]
+        if point not in rank and support[point] < 3:
+            put(point, max(2, support[point] + 1))
+
+    def across(edge):
+        t = mesh.twin[edge]
+        if t is None or size(t) != 3 or not known(edge, t):
+            return
+        here, there = mesh.previous[edge], mesh.previous[t]
+        if known(here):
+            supported(there)
+        if known(there):
+            supported(here)
+
+    def inside(corner):
+        n = mesh.next[corner]
+        if known(n, mesh.previous[corner], mesh.next[n]):
+            supported(corner)
+
+    def take(point):
+        rank[point] = len(rank)
+        for c in around[point]:
+            n, p = mesh.next[c], mesh.previous[c]
+            for x in (at[n], at[p]):
+                if x not in rank and support[x] == 0:
+                    put(x, 1)
+            if size(c) == 3:
+                across(n)
+                across(c)
+            else:
+                inside(mesh.previous[p])
+                inside(p)
+                inside(n)
+
+    for start in range(count):
+        if start in rank:
+            continue
+        take(start)
+        level = 3
+        while level:
+            if not waiting[level]:
+                level -= 1
+                continue
+            point = waiting[level].pop(0)
+            if point not in rank and support[point] == level:
+                take(point)
+                level = 3
+    return [rank[point] for point in range(count)]
+
+
 class Positions:  # section 6
     def __init__(self, header, mesh):
+        rank = rank_points(mesh, header.points) if header.ranked else list(range(header.points))
+        self.point = [rank[x] for x in mesh.vertex]
         self.h, self.mesh, self.d = header, mesh, header.decoder(2, 315)
         self.tables = header.tables >> 2 & 1
         self.mask, self.half = (1 << header.bits) - 1, 1 << header.bits - 1
         self.read_weights()
         self.around = [[] for _ in range(header.points)]
-        for corner, vertex in enumerate(mesh.vertex[: mesh.walked]):
+        for corner, vertex in enumerate(self.point[: mesh.walked]):
             self.around[vertex].append(corner)
         self.find_parts()
         self.at, self.classes, self.error, self.last_choice = [], [], [[0, 0], [0, 0]], 0
@@ -707,6 +778,7 @@ class Positions:  # section 6
             else:
                 self.vertex(v)
         self.d.finish()
+        self.at = [self.at[x] for x in rank] + self.at[header.points :]
 
     def read_weights(self):
         raw = self.d.raw
@@ -733,7 +805,7 @@ class Positions:  # section 6
             gate = mesh.twin[first]
             if (gate is None or mesh.face_of[gate] >= f) and (not self.parts or self.parts[-1] != seen):
                 self.parts.append(seen)
-            seen = max([seen] + [x + 1 for x in mesh.vertex[first : first + n]])
+            seen = max([seen] + [x + 1 for x in self.point[first : first + n]])
 
     def lag(self, v):
         if self.period:
@@ -776,7 +848,7 @@ class Positions:  # section 6
         return [clamp(x) for x in at], order, normal, spread, s.basis
 
     def vertex(self, v):
-        s = Stencil(self.mesh, self.mesh.vertex, self.mesh.twin, self.around[v] if v < self.h.points else [], v)
+        s = Stencil(self.mesh, self.point, self.mesh.twin, self.around[v] if v < self.h.points else [], v)
         plain = self.predict(s, v)
         if self.tables:
             return self.code(v, s, plain)

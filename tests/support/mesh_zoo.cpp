@@ -353,6 +353,48 @@ QuantizedMesh pin_mesh(uint32_t segments, uint32_t rings, int position_bits) {
   return result;
 }
 
+QuantizedMesh irregular_mesh(uint32_t side) {
+  QuantizedMesh mesh;
+  mesh.position_bits = 14;
+  for (uint32_t y = 0; y < side; ++y)
+    for (uint32_t x = 0; x < side; ++x) {
+      QuantizedVertex vertex;
+      vertex.position[0] = static_cast<uint16_t>(100 * x);
+      vertex.position[1] = static_cast<uint16_t>(100 * y);
+      vertex.position[2] = static_cast<uint16_t>(3000 + (x * x + 2 * y * y) / 3);
+      mesh.vertices.push_back(vertex);
+    }
+  std::vector<std::array<uint32_t, 3>> triangles;
+  for (uint32_t y = 0; y + 1 < side; ++y)
+    for (uint32_t x = 0; x + 1 < side; ++x) {
+      const uint32_t a = y * side + x, b = a + 1, c = b + side, d = a + side;
+      triangles.push_back({a, b, c});
+      triangles.push_back({a, c, d});
+    }
+  const auto turns = [&](uint32_t a, uint32_t b, uint32_t c) {  // left, seen from above
+    const auto at = [&](uint32_t v, int axis) { return int64_t{mesh.vertices[v].position[axis]}; };
+    return (at(b, 0) - at(a, 0)) * (at(c, 1) - at(a, 1)) - (at(b, 1) - at(a, 1)) * (at(c, 0) - at(a, 0)) > 0;
+  };
+  Random random(77);
+  for (uint32_t i = 0; i < 12 * side; ++i)
+    for (size_t t = random.below(7); t < triangles.size(); t += 1 + random.below(13)) {
+      auto& [a, b, c] = triangles[t];
+      std::rotate(triangles[t].begin(), triangles[t].begin() + random.below(3), triangles[t].end());
+      const size_t near = std::min(t + 1 + random.below(2 * side), triangles.size() - 1);
+      auto& other = triangles[near];
+      for (int k = 0; k < 3; ++k, std::rotate(other.begin(), other.begin() + 1, other.end())) {
+        if (near == t || other[0] != c || other[1] != b) continue;  // the edge b -> c the other way round
+        const uint32_t d = other[2];
+        if (!turns(a, b, d) || !turns(a, d, c)) break;
+        other = {a, d, c};
+        c = d;
+        break;
+      }
+    }
+  for (const auto& [a, b, c] : triangles) add_face(mesh, {a, b, c});
+  return mesh;
+}
+
 std::vector<NamedMesh> mesh_zoo() {
   std::vector<NamedMesh> zoo;
   const auto add = [&](const char* name, QuantizedMesh mesh) { zoo.push_back({name, std::move(mesh)}); };
@@ -383,6 +425,8 @@ std::vector<NamedMesh> mesh_zoo() {
       with_face_values(with_attributes(with_slivers(with_seams(wave_mesh(12, 8, true), 6), 50), 10, 12), 2, 8));
   add("many slivers on few edges", with_slivers(wave_mesh(2, 1, true), 300));
   add("pin of 4 bits", pin_mesh(16, 24, 4));
+  add("any valence", irregular_mesh(12));
+  add("any valence, hard edges", with_slivers(with_seams(irregular_mesh(9), 4), 12));
   add("extremes of 16 bits", extremes(16));
   add("one bit", extremes(1));
   add("hard edges", with_seams(wave_mesh(12, 9, true), 1));
