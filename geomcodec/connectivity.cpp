@@ -41,6 +41,13 @@ class EdgeIndex {
     return lowest_free_;
   }
   void take(uint32_t face) { taken_[face] = 1; }
+  // As before any face was taken.
+  void restart(std::span<const uint8_t> left_out) {
+    std::fill(taken_.begin(), taken_.end(), uint8_t{0});
+    std::copy(left_out.begin(), left_out.end(), taken_.begin());
+    std::fill(free_offset_.begin(), free_offset_.end(), 0);
+    lowest_free_ = 0;
+  }
 
  private:
   struct Edge {
@@ -109,6 +116,14 @@ struct Source {
     order.vertex.reserve(n_vertices);
     order.face.reserve(mesh_faces.size());
     order.first_corner.reserve(mesh_faces.size());
+  }
+  // For a second walk.
+  void restart(std::span<const uint8_t> left_out) {
+    edges.restart(left_out);
+    std::fill(coded_vertex.begin(), coded_vertex.end(), kNone);
+    order.vertex.clear();
+    order.face.clear();
+    order.first_corner.clear();
   }
   std::span<const uint32_t> indices;
   std::span<const Face> faces;
@@ -583,14 +598,11 @@ void Walk<Coder>::note_face() {
 namespace {
 
 template <class Coder>
-CodedConnectivity encode_walk(Coder& coder, const ConnectivityHeader& header, Source& source) {
-  CodedConnectivity coded;
+std::vector<uint8_t> encode_walk(Coder coder, const ConnectivityHeader& header, Source& source, Topology& topology) {
   Walk<Coder> walk(coder, header, &source, header.n_corners);
   PAC_ASSERT(walk.run());
-  coded.topology = walk.take();
-  coded.order = std::move(source.order);
-  coded.bytes = coder.finish();
-  return coded;
+  topology = walk.take();
+  return coder.finish();
 }
 
 template <class Coder>
@@ -604,7 +616,8 @@ Result<Topology> decode_walk(Coder& coder, const ConnectivityHeader& header, uin
 }  // namespace
 
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool by_tables) {
+                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool adaptively,
+                                      bool by_tables) {
   ConnectivityHeader header;
   std::vector<uint8_t> used(n_vertices);
   for (uint32_t f = 0; f < faces.size(); ++f) {
@@ -617,12 +630,12 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
   header.n_vertices = static_cast<uint32_t>(std::count(used.begin(), used.end(), uint8_t{1}));
 
   Source source(indices, faces, degenerate, n_vertices);
-  if (by_tables) {
-    TableEncoder coder(kWalkContexts);
-    return encode_walk(coder, header, source);
-  }
-  RangeEncoder coder;
-  return encode_walk(coder, header, source);
+  CodedConnectivity coded;
+  if (adaptively) coded.adaptive_bytes = encode_walk(RangeEncoder(), header, source, coded.topology);
+  if (adaptively && by_tables) source.restart(degenerate);
+  if (by_tables) coded.table_bytes = encode_walk(TableEncoder(kWalkContexts), header, source, coded.topology);
+  coded.order = std::move(source.order);
+  return coded;
 }
 
 Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header, bool by_tables,

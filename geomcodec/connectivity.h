@@ -21,15 +21,17 @@ struct WalkOrder {
   std::vector<uint32_t> vertex;        // per coded vertex: its number in the mesh; used ones only
 };
 
-// Walks a mesh (already checked), coding as it goes: the same walk by tables and not. degenerate: per face, whether it
-// is left out (degenerate_faces.h); empty if none is.
+// Walks the faces of a mesh that is already checked, coding as it goes: adaptively, by tables or in both ways, the walk
+// being the same. What is not asked for is empty. degenerate: per face, whether it is left out (degenerate_faces.h);
+// empty if none is.
 struct CodedConnectivity {
   Topology topology;
   WalkOrder order;
-  std::vector<uint8_t> bytes;
+  std::vector<uint8_t> adaptive_bytes, table_bytes;
 };
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool by_tables);
+                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool adaptively,
+                                      bool by_tables);
 
 struct ConnectivityHeader {
   uint32_t n_vertices = 0, n_faces = 0, n_corners = 0;  // vertices: those that faces use

@@ -140,17 +140,18 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
   const Header& header = stream.header;
   const AttributeMesh attributes{points, stencils, seams.sibling};
   // Isolated vertices are a claim of the header until their positions are read: only as many as the faces have shown.
-  const bool tables = header.by_tables(kPositions);
-  const bool together = header.has(kColors) && header.by_tables(kColors) == tables && !header.ranked &&
-                        header.n_isolated_vertices <= header.n_used_vertices;
+  const bool together = header.has(kColors) && !header.ranked && header.n_isolated_vertices <= header.n_used_vertices;
   if (together) {
     mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
     VertexFailure failure;
-    const std::span<const uint8_t> positions = stream.section[kPositions], colors = stream.section[kColors];
-    const bool done = tables ? decode_positions_and_colors_by_tables(positions, colors, attributes,
-                                                                     header.position_bits, mesh.vertices, failure)
-                             : decode_positions_and_colors(positions, colors, attributes, header.position_bits,
-                                                           header.trained, header.chooses, mesh.vertices, failure);
+    const CodedVertices coded{stream.section[kPositions],
+                              stream.section[kColors],
+                              header.by_tables(kPositions),
+                              header.by_tables(kColors),
+                              header.position_bits,
+                              header.trained,
+                              header.chooses};
+    const bool done = decode_positions_and_colors(coded, attributes, mesh.vertices, failure);
     if (!done) return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {
     PAC_CHECK(decode_vertices(stream, points, stencils, seams, mesh));

@@ -24,7 +24,7 @@ struct Walked {
   Topology points;  // over points, as the walk numbers them
   Seams seams;
   WalkOrder order;  // vertex: all vertices of the mesh, isolated ones last
-  std::vector<uint8_t> connectivity_bytes, degenerate_bytes, seam_bytes;
+  std::vector<uint8_t> connectivity_bytes, connectivity_by_tables, degenerate_bytes, seam_bytes;
   std::vector<QuantizedVertex> vertices;
   std::vector<uint32_t> material;
 };
@@ -41,7 +41,10 @@ std::vector<uint32_t> corners_in_order(const QuantizedMesh& mesh, const WalkOrde
   return corners;
 }
 
-Walked walk(const QuantizedMesh& mesh, bool by_tables) {
+// What an encoder makes of the sections that tables may code. either: both, and keeps one of them.
+enum class Coding { adaptive, tables, either };
+
+Walked walk(const QuantizedMesh& mesh, Coding coding) {
   Walked walked;
   const auto n_vertices = static_cast<uint32_t>(mesh.vertices.size());
   const Points points = find_points(mesh.vertices);
@@ -49,9 +52,11 @@ Walked walk(const QuantizedMesh& mesh, bool by_tables) {
   point_indices.reserve(mesh.indices.size());
   for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
   const std::vector<uint8_t> degenerate = find_degenerate_faces(point_indices, mesh.faces, points.count);
-  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, degenerate, points.count, by_tables);
+  CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, degenerate, points.count,
+                                                       coding != Coding::tables, coding != Coding::adaptive);
   walked.points = std::move(connectivity.topology);
-  walked.connectivity_bytes = std::move(connectivity.bytes);
+  walked.connectivity_bytes = std::move(connectivity.adaptive_bytes);
+  walked.connectivity_by_tables = std::move(connectivity.table_bytes);
   walked.order = std::move(connectivity.order);
   if (!degenerate.empty())
     walked.degenerate_bytes =
@@ -126,12 +131,20 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
   return header;
 }
 
-// From so many vertices on a decoder's time shows, and what tables take is little beside the rest.
+// From so many vertices on what tables take is little beside the rest.
 constexpr size_t kManyVertices = 16384;
+// Below so many vertices a decoder takes less than 0.2 ms however sections are coded; below so many bits a coordinate
+// a grid is chosen where bytes are scarce.
+constexpr size_t kFewVertices = 512;
+constexpr int kFineBits = 13;
 
-bool wants_tables(const QuantizedMesh& mesh, Effort effort) {
-  if (mesh.faces.empty() || effort == Effort::best) return false;
-  return effort == Effort::fast || mesh.vertices.size() >= kManyVertices;
+Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
+  if (mesh.faces.empty() || effort == Effort::best) return Coding::adaptive;
+  if (effort == Effort::fast || mesh.vertices.size() >= kManyVertices) return Coding::tables;
+  // An encoder that makes both needs half as much time again, which positions alone are not worth.
+  const bool is_plain = mesh.normal_bits == 0 && mesh.texcoord_bits == 0 && has_constant_color(mesh);
+  const bool is_small = mesh.vertices.size() < kFewVertices || mesh.position_bits < kFineBits;
+  return is_plain || is_small ? Coding::adaptive : Coding::either;
 }
 
 // Whether positions repeat, by rows or by parts, which only the other coding predicts: many vertices of small parts
@@ -162,13 +175,28 @@ void choose_tables(const Walked& walked, Effort effort, Header& header) {
 
 using Sections = std::array<std::vector<uint8_t>, kSections>;
 
-void encode_attributes(const Header& header, const AttributeMesh& mesh, const Walked& walked, Sections& sections) {
-  if (header.has(kColors))
-    sections[kColors] = encode_colors(mesh, walked.vertices, header.trained, header.by_tables(kColors));
-  if (header.has(kNormals))
-    sections[kNormals] = encode_normals(mesh, walked.vertices, header.normal_bits, header.by_tables(kNormals));
-  if (header.has(kTexcoords))
-    sections[kTexcoords] = encode_texcoords(mesh, walked.vertices, header.texcoord_bits, header.by_tables(kTexcoords));
+// The sections of vertices that the header has, as it says they are coded; `by_tables`, if given, receives them coded
+// by tables as well.
+struct VertexSections {
+  const Walked& walked;
+  const EncodeOptions& options;
+  Header& header;
+  Sections& sections;
+  Sections* by_tables;
+};
+
+void encode_attributes(const AttributeMesh& mesh, const VertexSections& out) {
+  const Header& header = out.header;
+  const auto encode_section = [&](Section section, auto encode_as) {
+    if (!header.has(section)) return;
+    out.sections[section] = encode_as(header.by_tables(section));
+    if (out.by_tables != nullptr) (*out.by_tables)[section] = encode_as(true);
+  };
+  const std::span<const QuantizedVertex> vertices = out.walked.vertices;
+  encode_section(kColors, [&](bool tables) { return encode_colors(mesh, vertices, header.trained, tables); });
+  encode_section(kNormals, [&](bool tables) { return encode_normals(mesh, vertices, header.normal_bits, tables); });
+  encode_section(kTexcoords,
+                 [&](bool tables) { return encode_texcoords(mesh, vertices, header.texcoord_bits, tables); });
 }
 
 // The mesh with its points in the other order.
@@ -196,76 +224,129 @@ bool choosing_pays(const Walked& walked, const Stencils& stencils, std::span<con
          20 * choosing < 19 * estimate_positions(walked.points, stencils, positions, bits, trained, false);
 }
 
-void take_positions(PositionSection coded, bool ranked, Header& header, std::vector<uint8_t>& section) {
-  section = std::move(coded.bytes);
-  header.chooses = coded.chooses;
-  header.ranked = ranked;
+void take_positions(PositionSection coded, bool ranked, const VertexSections& out) {
+  out.sections[kPositions] = std::move(coded.bytes);
+  out.header.chooses = coded.chooses;
+  out.header.ranked = ranked;
 }
 
 // What telling it takes in the header, and a decoder some time: it should gain a little more.
 constexpr size_t kRankedBytes = 8;
 
-void encode_positions_of(const Walked& walked, const Stencils& stencils, const EncodeOptions& options,
-                         size_t connectivity_bytes, Header& header, std::vector<uint8_t>& section) {
-  const std::vector<Position> positions = positions_of(walked);
+// In whichever order of the points takes fewer bytes.
+void encode_positions_adaptively(const Stencils& stencils, std::span<const Position> positions,
+                                 const VertexSections& out) {
+  const Topology& walked = out.walked.points;
+  const Header& header = out.header;
   const int bits = header.position_bits;
-  if (header.by_tables(kPositions)) {
-    section = encode_positions_by_tables(stencils, positions, bits);
-    if (options.effort == Effort::fast) return;
-    const Ranked ranked(walked.points, stencils, positions);
-    if (!choosing_pays(walked, stencils, positions, ranked, bits, options.trained_priors, section.size())) return;
-    header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
-    header.trained = options.trained_priors;
-    return take_positions(
-        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, false), true, header,
-        section);
-  }
-  const bool thorough = options.effort == Effort::best;
-  PositionSection coded = encode_positions(walked.points, stencils, positions, bits, header.trained, thorough);
+  const bool thorough = out.options.effort == Effort::best;
+  PositionSection coded = encode_positions(walked, stencils, positions, bits, header.trained, thorough);
   // Where the walk has little to tell and choosing takes hardly less, as on regular meshes, the other order seldom
   // gains.
-  const bool irregular = 8 * connectivity_bytes > walked.points.n_vertices;
+  const bool irregular = 8 * out.sections[kConnectivity].size() > walked.n_vertices;
   if (header.n_faces > 0 && (thorough || (irregular && coded.choosing_bits > 0))) {
-    const Ranked ranked(walked.points, stencils, positions);
+    const Ranked ranked(walked, stencils, positions);
     if (!thorough &&
         50 * estimate_choosing(ranked.topology, ranked.stencils, ranked.positions, bits) > 49 * coded.choosing_bits)
-      return take_positions(std::move(coded), false, header, section);
+      return take_positions(std::move(coded), false, out);
     PositionSection other =
         encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, thorough);
-    if (other.bytes.size() + kRankedBytes < coded.bytes.size())
-      return take_positions(std::move(other), true, header, section);
+    if (other.bytes.size() + kRankedBytes < coded.bytes.size()) return take_positions(std::move(other), true, out);
   }
-  take_positions(std::move(coded), false, header, section);
+  take_positions(std::move(coded), false, out);
+}
+
+void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
+  const Walked& walked = out.walked;
+  Header& header = out.header;
+  const std::vector<Position> positions = positions_of(walked);
+  const int bits = header.position_bits;
+  std::vector<uint8_t>& section = out.sections[kPositions];
+  if (header.by_tables(kPositions)) {
+    section = encode_positions_by_tables(stencils, positions, bits);
+    if (out.options.effort == Effort::fast) return;
+    const Ranked ranked(walked.points, stencils, positions);
+    if (!choosing_pays(walked, stencils, positions, ranked, bits, out.options.trained_priors, section.size())) return;
+    header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
+    header.trained = out.options.trained_priors;
+    return take_positions(
+        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, false), true, out);
+  }
+  encode_positions_adaptively(stencils, positions, out);
+  if (out.by_tables != nullptr) (*out.by_tables)[kPositions] = encode_positions_by_tables(stencils, positions, bits);
 }
 
 // Positions over points, all else over vertices; without seams these are the same mesh.
-void encode_vertices(const EncodeOptions& options, Header& header, const Walked& walked, Sections& sections) {
+void encode_vertices(const VertexSections& out) {
+  const Header& header = out.header;
+  const Walked& walked = out.walked;
   if (!header.has(kPositions)) return;
   {
     const Stencils stencils(walked.points);
-    encode_positions_of(walked, stencils, options, sections[kConnectivity].size(), header, sections[kPositions]);
-    if (header.n_split_vertices == 0)
-      return encode_attributes(header, {walked.points, stencils, walked.seams.sibling}, walked, sections);
+    encode_positions_of(stencils, out);
+    if (header.n_split_vertices == 0) return encode_attributes({walked.points, stencils, walked.seams.sibling}, out);
   }
   if (!header.has(kColors) && !header.has(kNormals) && !header.has(kTexcoords)) return;
   const Topology topology = cut_at_seams(walked.points, walked.seams);
   const Stencils stencils(topology);
-  encode_attributes(header, {topology, stencils, walked.seams.sibling}, walked, sections);
+  encode_attributes({topology, stencils, walked.seams.sibling}, out);
+}
+
+// Of the sections that may be either, those by tables that save a decoder most time while the stream's sections grow by
+// a twelfth at most; none where these are so few bytes that a table's own would show.
+void keep_fastest(Header& header, Sections& sections, Sections& by_tables) {
+  struct Candidate {
+    Section section;
+    int64_t growth;      // bytes
+    int64_t saved_time;  // about so many ns
+  };
+  const int64_t n_vertices = header.n_vertices(), n_points = header.n_points(), n_faces = header.n_faces;
+  std::vector<Candidate> candidates;
+  int64_t room = 0, most_saved = 0;
+  for (const auto& [section, saved_time] :
+       {std::pair{kConnectivity, 20 * n_faces}, std::pair{kPositions, 90 * n_points},
+        std::pair{kColors, 40 * n_vertices}, std::pair{kNormals, 25 * n_vertices},
+        std::pair{kTexcoords, 35 * n_vertices}}) {
+    if (!header.has(section)) continue;
+    const auto bytes = static_cast<int64_t>(sections[section].size());
+    room += bytes;
+    candidates.push_back({section, static_cast<int64_t>(by_tables[section].size()) - bytes, saved_time});
+  }
+  if (room < 1024) return;
+  room /= 12;
+  for (uint32_t subset = 1; subset < 1u << candidates.size(); ++subset) {
+    int64_t growth = 0, saved_time = 0;
+    uint8_t tables = 0;
+    for (size_t i = 0; i < candidates.size(); ++i) {
+      if ((subset >> i & 1) == 0) continue;
+      growth += candidates[i].growth;
+      saved_time += candidates[i].saved_time;
+      tables = static_cast<uint8_t>(tables | 1u << candidates[i].section);
+    }
+    if (growth > room || saved_time <= most_saved) continue;
+    most_saved = saved_time;
+    header.tables = tables;
+  }
+  for (const Candidate& candidate : candidates)
+    if (header.by_tables(candidate.section)) sections[candidate.section] = std::move(by_tables[candidate.section]);
+  if (header.by_tables(kPositions)) header.chooses = header.ranked = false;
 }
 
 }  // namespace
 
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
   PAC_CHECK(check_mesh(mesh));
-  const bool by_tables = wants_tables(mesh, options.effort);
-  Walked walked = walk(mesh, by_tables);
+  const Coding coding = coding_for(mesh, options.effort);
+  Walked walked = walk(mesh, coding);
   Header header = header_of(mesh, walked, options);
-  if (by_tables) choose_tables(walked, options.effort, header);
-  Sections sections;
-  sections[kConnectivity] = std::move(walked.connectivity_bytes);
+  if (coding == Coding::tables) choose_tables(walked, options.effort, header);
+  Sections sections, by_tables;
+  by_tables[kConnectivity] = std::move(walked.connectivity_by_tables);
+  sections[kConnectivity] = std::move(coding == Coding::tables ? by_tables[kConnectivity] : walked.connectivity_bytes);
   sections[kDegenerate] = std::move(walked.degenerate_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
-  encode_vertices(options, header, walked, sections);
+  encode_vertices({walked, options, header, sections, coding == Coding::either ? &by_tables : nullptr});
+  if (coding == Coding::either) keep_fastest(header, sections, by_tables);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
   if (header.has(kFaceValues))
     sections[kFaceValues] = encode_face_values(walked.points, face_values_in_order(mesh, walked.order),
@@ -293,7 +374,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
 QuantizedMesh reorder(const QuantizedMesh& mesh) {
   QuantizedMesh result;
   if (!check_mesh(mesh)) return result;
-  Walked walked = walk(mesh, false);
+  Walked walked = walk(mesh, Coding::adaptive);
   result.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, result.origin);
   std::copy(mesh.step, mesh.step + 3, result.step);

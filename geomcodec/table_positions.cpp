@@ -8,8 +8,8 @@
 namespace pac::geomcodec {
 namespace {
 
-// Choices are made on so many vertices in runs spread over the mesh.
-constexpr size_t kRun = 64, kRuns = 64;
+// Choices are made on a quarter of the vertices in runs spread over the mesh, from kFewestRuns to kMostRuns of them.
+constexpr size_t kRun = 64, kFewestRuns = 16, kMostRuns = 64;
 
 // A coder that counts what TableEncoder would be given.
 class Meter {
@@ -48,9 +48,10 @@ struct Sampled {
 
 Sampled sample_of(const Stencils& stencils, size_t n_positions) {
   Sampled sampled;
-  const bool all = n_positions <= kRun * kRuns;
-  for (size_t run = 0; run < (all ? 1 : kRuns); ++run) {
-    const size_t begin = all ? 0 : n_positions * run / kRuns;
+  const bool all = n_positions <= kRun * kFewestRuns;
+  const size_t n_runs = all ? 1 : std::clamp(n_positions / (4 * kRun), kFewestRuns, kMostRuns);
+  for (size_t run = 0; run < n_runs; ++run) {
+    const size_t begin = n_positions * run / n_runs;
     const size_t end = all ? n_positions : begin + kRun;
     for (size_t v = begin; v < end; ++v) {
       sampled.vertex.push_back(static_cast<uint32_t>(v));

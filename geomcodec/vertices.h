@@ -15,15 +15,17 @@ struct VertexFailure {
   Failure failure;
 };
 
-// The same positions and colors that decode_positions() and decode_colors() find one after the other, for a mesh whose
-// vertices are its points. vertices: all of them. False: `failure` tells why.
-bool decode_positions_and_colors(std::span<const uint8_t> position_bytes, std::span<const uint8_t> color_bytes,
-                                 const AttributeMesh& mesh, int position_bits, bool trained, bool chooses,
+// How the two sections are coded.
+struct CodedVertices {
+  std::span<const uint8_t> positions, colors;
+  bool positions_by_tables = false, colors_by_tables = false;
+  int position_bits = 0;
+  bool trained = false, chooses = false;  // as the header says
+};
+
+// The same positions and colors that decode_positions() and decode_colors() or their likes by tables find one after the
+// other, for a mesh whose vertices are its points. vertices: all of them. False: `failure` tells why.
+bool decode_positions_and_colors(const CodedVertices& coded, const AttributeMesh& mesh,
                                  std::span<QuantizedVertex> vertices, VertexFailure& failure);
-// The same where tables code both.
-bool decode_positions_and_colors_by_tables(std::span<const uint8_t> position_bytes,
-                                           std::span<const uint8_t> color_bytes, const AttributeMesh& mesh,
-                                           int position_bits, std::span<QuantizedVertex> vertices,
-                                           VertexFailure& failure);
 
 }  // namespace pac::geomcodec
