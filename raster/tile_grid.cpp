@@ -15,12 +15,8 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
     grid_.first_offset = std::min({grid_.first_offset, int32_t{offset.x}, int32_t{offset.y}});
     grid_.last_offset = std::max({grid_.last_offset, int32_t{offset.x}, int32_t{offset.y}});
   }
-  std::fill_n(whole_, kTilePixels, 0u);
-  std::fill_n(near_z_, kTilePixels, 1.0f);
-  std::fill_n(far_z_, kTilePixels, 1.0f);
   const SamplePosition corner{area.x * 256, area.y * 256};
-  for (size_t i = 0; i < triangles_.size(); ++i)
-    input.kernels->tile.rasterize_grid(*triangles_[i], static_cast<uint32_t>(i + 1), triangles_.data(), corner, grid_);
+  input.kernels->tile.rasterize_grid(triangles_.data(), static_cast<uint32_t>(triangles_.size()), corner, grid_);
   if (first_sample == 0 && takes_first_sample_from_grid(input)) {
     const bool has_depth = !input.depth.empty(), has_ids = !input.id.empty();
     const FirstSampleTarget target{

@@ -68,9 +68,6 @@ struct GridTile {
       grid.x[s] = pattern[s % pattern.size()].x;
       grid.y[s] = pattern[s % pattern.size()].y;
     }
-    std::fill_n(whole, kTilePixels, 0u);
-    std::fill_n(near_z, kTilePixels, 1.0f);
-    std::fill_n(far_z, kTilePixels, 1.0f);
   }
   uint32_t id_at(int pixel, int sample) const {
     return whole[pixel] == kSplitPixel ? ids[pixel * kGridSamples + sample] : whole[pixel];
@@ -95,8 +92,7 @@ TEST_CASE("rasterize_grid: all samples at once see what each sees alone, on ever
       }
       std::vector<const RasterTriangle*> list;
       for (const RasterTriangle& t : triangles) list.push_back(&t);
-      for (uint32_t i = 0; i < list.size(); ++i)
-        table->tile.rasterize_grid(*list[i], i + 1, list.data(), {corner, corner}, tile.grid);
+      table->tile.rasterize_grid(list.data(), static_cast<uint32_t>(list.size()), {corner, corner}, tile.grid);
       for (size_t i = 0; i < triangles.size(); ++i) triangles[i].id = static_cast<uint32_t>(1000 + i);
       Tile first;
       std::fill(std::begin(first.depth), std::end(first.depth), 7.0f);  // beyond width and height it stays

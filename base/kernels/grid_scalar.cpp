@@ -28,8 +28,7 @@ void split(const SampleGrid& grid, int at) {
   grid.whole[at] = kSplitPixel;
 }
 
-void rasterize_grid(const RasterTriangle& t, uint32_t id, const RasterTriangle* const*, SamplePosition origin,
-                    const SampleGrid& grid) {
+void rasterize_one(const RasterTriangle& t, uint32_t id, SamplePosition origin, const SampleGrid& grid) {
   const int tile_x = origin.x >> 8, tile_y = origin.y >> 8;
   const int first_x = std::max(t.min_x - tile_x, 0), last_x = std::min(t.max_x - tile_x, kTileSize - 1);
   const int first_y = std::max(t.min_y - tile_y, 0), last_y = std::min(t.max_y - tile_y, kTileSize - 1);
@@ -46,6 +45,13 @@ void rasterize_grid(const RasterTriangle& t, uint32_t id, const RasterTriangle* 
         grid.depth[at] = z;
         grid.ids[at] = id;
       }
+}
+
+void rasterize_grid(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, const SampleGrid& grid) {
+  std::fill_n(grid.whole, kTileSize * kTileSize, 0u);
+  std::fill_n(grid.near_z, kTileSize * kTileSize, 1.0f);
+  std::fill_n(grid.far_z, kTileSize * kTileSize, 1.0f);
+  for (uint32_t i = 0; i < n; ++i) rasterize_one(*triangles[i], i + 1, origin, grid);
 }
 
 void first_sample(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,

@@ -212,9 +212,10 @@ struct TileKernels {
   void (*rasterize_all)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
                         uint32_t* ids);
 
-  // rasterize() for all samples of the grid at once; origin: 256 * tile origin. `triangles`: those of the ids so far.
-  void (*rasterize_grid)(const RasterTriangle& triangle, uint32_t id, const RasterTriangle* const* triangles,
-                         SamplePosition origin, const SampleGrid& grid);
+  // What all samples of the grid see of triangles[i], as id i + 1, in order, before the background: rasterize() for
+  // each. Fills the grid's arrays; origin: 256 * tile origin.
+  void (*rasterize_grid)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin,
+                         const SampleGrid& grid);
 
   // Depth and RasterTriangle::id of the tile's first width x height pixels at sample 0 of the grid, as rasterize()
   // finds them there; 1 and 0 where nothing is. Groups of eight are read whole.
