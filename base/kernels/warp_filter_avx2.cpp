@@ -56,6 +56,14 @@ inline __m256i filter_two(const int16_t* plane, ptrdiff_t stride, Taps taps, con
   return _mm256_madd_epi16(v, load_two(taps[x[0]], taps[x[1]]));
 }
 
+// Eight points anywhere. What is rare stays out of the loop and its registers.
+[[gnu::noinline]] __m128i filter_apart(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x,
+                                       const int32_t* y) {
+  __m256i sums[4];
+  for (int i = 0; i < 4; ++i) sums[i] = filter_two(plane, stride, taps, x + 2 * i, y + 2 * i);
+  return finish_eight(sums);
+}
+
 // Six rows of sixteen columns, pairs of them interleaved: columns 0..3 and 8..11, 4..7 and 12..15.
 struct Patch {
   __m256i low[3], high[3];
@@ -97,32 +105,45 @@ inline __m256i filter_down(const Patch& patch, const int16_t* taps) {
   return _mm256_packs_epi32(sum(patch.low), sum(patch.high));
 }
 
-// Eight points of up to kHeights heights: sixteen columns are filtered down once for each. False where there are more.
-constexpr int kHeights = 4;
-inline bool filter_heights(const Patch& patch, Taps taps, __m256i from_first, const int32_t* x, const int32_t* y,
-                           __m256i sums[4]) {
-  alignas(32) int16_t v[16 * kHeights];
-  alignas(32) int32_t at[8];
-  const __m256i heights = load(y);
-  __m256i places = from_first;
-  unsigned left = 0xFF;
-  for (int i = 0; left != 0; ++i) {
-    if (i == kHeights) return false;
-    const int32_t height = y[__builtin_ctz(left)];
-    const __m256i same = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(height));
-    store(v + 16 * i, filter_down(patch, taps[height]));
-    places = _mm256_add_epi32(places, _mm256_and_si256(same, _mm256_set1_epi32(16 * i)));
-    left &= ~static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
-  }
-  store(at, places);
-  for (int i = 0; i < 4; ++i)
-    sums[i] =
-        _mm256_madd_epi16(load_two(v + at[2 * i], v + at[2 * i + 1]), load_two(taps[x[2 * i]], taps[x[2 * i + 1]]));
-  return true;
+// Three pairs of values a lane: columns or coefficients 0 and 1, 2 and 3, 4 and 5 of eight points.
+struct Pairs {
+  __m256i of[3];
+};
+
+// Of eight points one column apart, from sixteen columns on.
+inline Pairs pairs_of_columns(__m256i v) {
+  const __m256i from_0 = _mm256_permute4x64_epi64(v, 0x94), from_4 = _mm256_permute4x64_epi64(v, 0xE9);
+  const __m256i first = _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 2, 3, 2, 3, 4, 5, 4, 5, 6, 7, 6, 7, 8, 9));
+  const __m256i third =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(4, 5, 6, 7, 6, 7, 8, 9, 8, 9, 10, 11, 10, 11, 12, 13));
+  return {{_mm256_shuffle_epi8(from_0, first), _mm256_shuffle_epi8(from_0, third), _mm256_shuffle_epi8(from_4, first)}};
+}
+
+inline Pairs pairs_of_taps(Taps taps, const int32_t* x) {
+  const __m256i a = load_two(taps[x[0]], taps[x[4]]), b = load_two(taps[x[1]], taps[x[5]]);
+  const __m256i c = load_two(taps[x[2]], taps[x[6]]), d = load_two(taps[x[3]], taps[x[7]]);
+  const __m256i ab = _mm256_unpacklo_epi32(a, b), cd = _mm256_unpacklo_epi32(c, d);
+  return {{_mm256_unpacklo_epi64(ab, cd), _mm256_unpackhi_epi64(ab, cd),
+           _mm256_unpacklo_epi64(_mm256_unpackhi_epi32(a, b), _mm256_unpackhi_epi32(c, d))}};
+}
+
+// Eight points one column apart, of two heights at most: the first one's, and the last one's where `is_last`.
+inline __m128i filter_in_order(const Patch& patch, Taps taps, const int32_t* x, const int32_t* y, __m256i is_last) {
+  const Pairs first = pairs_of_columns(filter_down(patch, taps[y[0]]));
+  const Pairs last = pairs_of_columns(filter_down(patch, taps[y[7]]));
+  const Pairs tx = pairs_of_taps(taps, x);
+  __m256i sum = _mm256_set1_epi32(512);
+  for (int k = 0; k < 3; ++k)
+    sum = _mm256_add_epi32(sum, _mm256_madd_epi16(_mm256_blendv_epi8(first.of[k], last.of[k], is_last), tx.of[k]));
+  const __m256i done = _mm256_srai_epi32(sum, 10);
+  return _mm_packs_epi32(_mm256_castsi256_si128(done), _mm256_extracti128_si256(done, 1));
 }
 
 // Eight points of any heights: each is filtered down by itself.
-inline __m128i filter_each(const Patch& patch, Taps taps, __m256i from_first, const int32_t* x, const int32_t* y) {
+[[gnu::noinline]] __m128i filter_each(const int16_t* corner, ptrdiff_t stride, Taps taps, __m256i from_first,
+                                      const int32_t* x, const int32_t* y) {
+  Patch patch;
+  if (!load_patch(corner, stride, patch)) return _mm_setzero_si128();
   alignas(32) int32_t pairs[3][16];
   alignas(32) int32_t at[8];
   store(at, from_first);
@@ -149,28 +170,33 @@ inline __m128i filter_each(const Patch& patch, Taps taps, __m256i from_first, co
   return _mm_packs_epi32(_mm_srai_epi32(low, 10), _mm_srai_epi32(high, 10));
 }
 
+inline bool all(__m256i mask) {
+  return _mm256_movemask_epi8(mask) == -1;
+}
+
 inline __m128i filter_eight(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y) {
-  const __m256i columns = _mm256_srai_epi32(load(x), 6), lines = _mm256_srai_epi32(load(y), 6);
+  const __m256i heights = load(y), columns = _mm256_srai_epi32(load(x), 6), lines = _mm256_srai_epi32(heights, 6);
   const __m128i column = _mm256_castsi256_si128(columns), line = _mm256_castsi256_si128(lines);
   const __m256i from_first = _mm256_sub_epi32(columns, _mm256_broadcastd_epi32(column));
   const __m256i is_near = _mm256_cmpeq_epi32(_mm256_min_epu32(from_first, _mm256_set1_epi32(8)), from_first);
   const __m256i in_line = _mm256_cmpeq_epi32(lines, _mm256_broadcastd_epi32(line));
-  __m256i sums[4];
-  if (_mm256_movemask_epi8(_mm256_and_si256(is_near, in_line)) != -1) {
-    for (int i = 0; i < 4; ++i) sums[i] = filter_two(plane, stride, taps, x + 2 * i, y + 2 * i);
-    return finish_eight(sums);
-  }
+  if (!all(_mm256_and_si256(is_near, in_line))) return filter_apart(plane, stride, taps, x, y);
   const ptrdiff_t row = _mm_cvtsi128_si32(line) - kWarpTapsBefore;
+  const int16_t* first = plane + row * stride + _mm_cvtsi128_si32(column) - kWarpTapsBefore;
+  prefetch(first, (kWarpTaps + 1) * stride);  // of the next row's points
+  const __m256i in_order = _mm256_cmpeq_epi32(from_first, _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+  const __m256i is_first = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(y[0]));
+  const __m256i is_last = _mm256_cmpeq_epi32(heights, _mm256_set1_epi32(y[7]));
+  if (!all(_mm256_and_si256(in_order, _mm256_or_si256(is_first, is_last))))
+    return filter_each(first, stride, taps, from_first, x, y);
   Patch patch;
-  if (!load_patch(plane + row * stride + _mm_cvtsi128_si32(column) - kWarpTapsBefore, stride, patch))
-    return _mm_setzero_si128();
-  if (!filter_heights(patch, taps, from_first, x, y, sums)) return filter_each(patch, taps, from_first, x, y);
-  return finish_eight(sums);
+  if (!load_patch(first, stride, patch)) return _mm_setzero_si128();
+  return filter_in_order(patch, taps, x, y, is_last);
 }
 
 // Eight points of which some are absent: they go where the first of the others is.
-inline __m128i filter_present(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x, const int32_t* y,
-                              uint64_t states) {
+[[gnu::noinline]] __m128i filter_present(const int16_t* plane, ptrdiff_t stride, Taps taps, const int32_t* x,
+                                         const int32_t* y, uint64_t states) {
   const __m128i bytes = _mm_cvtsi64_si128(static_cast<long long>(states));
   const __m128i absent = _mm_cmpeq_epi8(bytes, _mm_setzero_si128());
   const __m256i absent_32 = _mm256_cvtepi8_epi32(absent);
