@@ -120,6 +120,7 @@ inline void surface_keys_row(const uint32_t* id, const float* depth, const Surfa
   for (; i + 8 <= n; i += 8) {
     prefetch(id + i, kAhead);
     prefetch(depth + i, kAhead);
+    prefetch(keys + i, kAhead);
     store(keys + i, eight(id + i, depth + i));
   }
   if (i == n) return;

@@ -25,6 +25,7 @@ void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint
   size_t i = 0;
   for (; i + 16 <= n; i += 16) {
     prefetch(base, static_cast<ptrdiff_t>(i + n));  // the next row
+    prefetch(out, static_cast<ptrdiff_t>(i + n));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), sixteen(base + i, carried + i));
   }
   if (i == n) return;
