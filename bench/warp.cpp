@@ -105,6 +105,12 @@ void register_rows(const char* kernel, const DoRow& do_row) {
     p.kernels.filter_points(p.planes[0].row(0), p.planes[0].stride(), p.taps(), p.x_64.row(y), p.y_64.row(y),
                             p.state.row(y), kColumns, p.out[0].row(y));
   });
+  register_rows("filter_both", [](Picture& p, int y) {
+    const int16_t* const planes[2] = {p.planes[0].row(0), p.planes[1].row(0)};
+    int16_t* const out[2] = {p.out[0].row(y), p.out[1].row(y)};
+    p.kernels.filter_both(planes, p.planes[0].stride(), p.taps(), p.x_64.row(y), p.y_64.row(y), p.state.row(y),
+                          kColumns, out);
+  });
   register_rows("filter_edges", [](Picture& p, int y) {
     p.kernels.filter_edges(p.planes[0].row(0), p.planes[0].stride(), p.map.view(), p.taps(), p.places(y), kColumns,
                            p.out[0].row(y));

@@ -40,27 +40,26 @@ void RowCarrier::find_half(RowCarrier& luma) {
   counts_ = kernels_.find_half_points(luma.places(), before_.view(), width_, places());
 }
 
-void RowCarrier::filter(const BorderedPlane& plane, int16_t* out) {
-  if (counts_.plain + counts_.edges == 0) {
+void RowCarrier::fetch_luma(const BorderedPlane& plane, int16_t* out) {
+  if (found() == 0) {
     std::fill_n(out, width_, int16_t{0});
     return;
   }
   kernels_.filter_points(plane.row(0), plane.stride(), kWarpFilter.data(), x_64_.data(), y_64_.data(), state_.data(),
                          width_, out);
-}
-
-void RowCarrier::fetch_luma(const BorderedPlane& plane, int16_t* out) {
-  filter(plane, out);
   if (counts_.edges > 0)
     lost_ =
         kernels_.filter_edges(plane.row(0), plane.stride(), before_.view(), kWarpFilter.data(), places(), width_, out);
 }
 
 void RowCarrier::fetch_chroma(const BorderedPlane& cb, const BorderedPlane& cr, int16_t* cb_out, int16_t* cr_out) {
-  filter(cb, cb_out);
-  filter(cr, cr_out);
   const int16_t* const planes[2] = {cb.row(0), cr.row(0)};
   int16_t* const out[2] = {cb_out, cr_out};
+  if (found() == 0) {
+    for (int16_t* row : out) std::fill_n(row, width_, int16_t{0});
+    return;
+  }
+  kernels_.filter_both(planes, cb.stride(), kWarpFilter.data(), x_64_.data(), y_64_.data(), state_.data(), width_, out);
   if (counts_.edges > 0) lost_ = kernels_.mean_edges(planes, cb.stride(), before_.view(), places(), width_, out);
 }
 

@@ -36,7 +36,6 @@ class RowCarrier {
 
  private:
   WarpPlaces places(int x = 0);
-  void filter(const BorderedPlane& plane, int16_t* out);
 
   const SurfaceMap& before_;
   const WarpKernels& kernels_;

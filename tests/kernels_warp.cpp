@@ -82,6 +82,19 @@ TEST_CASE("the filter is equal on every instruction set, at the extremes of its 
       kernels_for(isa)->warp.filter_points(plane.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(),
                                            present.data(), n, out[1].data());
       REQUIRE(out[0] == out[1]);
+      // The same of two planes: another one is this one with some samples of 0.
+      std::vector<int16_t> other = plane, both[2] = {out[0], out[0]};
+      for (int16_t& sample : other) sample = (next_random(state) & 1) != 0 || round % 5 == 0 ? int16_t{0} : sample;
+      scalar.filter_points(other.data(), kStride, sim::kWarpFilter.data(), x.data(), y.data(), present.data(), n,
+                           out[1].data());
+      const int16_t* const planes[2] = {plane.data(), other.data()};
+      int16_t* const results[2] = {both[0].data(), both[1].data()};
+      both[0].assign(n + 1, 99);
+      both[1].assign(n + 1, 99);
+      kernels_for(isa)->warp.filter_both(planes, kStride, sim::kWarpFilter.data(), x.data(), y.data(), present.data(),
+                                         n, results);
+      REQUIRE(both[0] == out[0]);
+      REQUIRE(both[1] == out[1]);
     }
   }
 }

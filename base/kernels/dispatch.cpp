@@ -67,6 +67,7 @@ void fill(Kernels& table, Isa isa) {
     fill_tile_avx2(table.tile);
     fill_warp_avx2(table.warp);
     fill_warp_filters_avx2(table.warp);
+    fill_warp_edges_avx2(table.warp);
     fill_warp_rows_avx2(table.warp);
   }
 #endif

@@ -91,6 +91,10 @@ struct WarpKernels {
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
                         const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out);
 
+  // The same of two planes of one stride.
+  void (*filter_both)(const int16_t* const planes[2], ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                      const int32_t* y_64, const uint8_t* state, size_t n, int16_t* const out[2]);
+
   // Points whose state is kWarpEdge, found in `map` and in a plane as for filter_points: samples whose keys differ from
   // the wanted one by more than kKeyTolerance count as a stand-in. That is the mean of those of the four samples around
   // the point that do not, with their bilinear weights in 1/64, rounded to nearest, halves away from 0. out[i] = the
@@ -118,6 +122,7 @@ void fill_warp_scalar(WarpKernels& table);
 void fill_warp_sse41(WarpKernels& table);
 void fill_warp_avx2(WarpKernels& table);
 void fill_warp_filters_avx2(WarpKernels& table);
+void fill_warp_edges_avx2(WarpKernels& table);
 void fill_warp_rows_avx2(WarpKernels& table);
 void fill_warp_neon(WarpKernels& table);
 

@@ -138,6 +138,11 @@ void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, 
   }
 }
 
+void filter_both(const int16_t* const planes[2], ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
+                 const int32_t* y_64, const uint8_t* state, size_t n, int16_t* const out[2]) {
+  for (int k = 0; k < 2; ++k) filter_points(planes[k], stride, taps, x_64, y_64, state, n, out[k]);
+}
+
 // A point between surfaces: which of the four samples around it show its own, with their bilinear weights.
 struct Edge {
   ptrdiff_t offset;  // of the first of them in a plane
@@ -242,6 +247,7 @@ void fill_warp_scalar(WarpKernels& table) {
   table.compare_keys = compare_keys;
   table.mark_smooth = mark_smooth;
   table.filter_points = filter_points;
+  table.filter_both = filter_both;
   table.filter_edges = filter_edges;
   table.mean_edges = mean_edges;
   table.add_carried_row = add_carried_row;

@@ -192,6 +192,7 @@ void fill_warp_sse41(WarpKernels& table) {
   table.reproject_row = reproject_row;
   table.find_points = find_points;
   table.filter_points = filter_points;
+  table.filter_both = filter_both;
   table.filter_edges = filter_edges;
   table.add_carried_row = add_carried_row;
   table.composite_signed_row = composite_signed_row;

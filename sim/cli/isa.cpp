@@ -104,6 +104,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
     PAC_KERNEL(warp, filter_points),
+    PAC_KERNEL(warp, filter_both),
     PAC_KERNEL(warp, surface_keys_row),
     PAC_KERNEL(warp, find_points),
     PAC_KERNEL(warp, find_half_points),
