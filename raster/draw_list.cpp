@@ -44,6 +44,8 @@ bool may_touch(const RasterTriangle& t, int tile_x, int tile_y, const SampleHull
   return true;
 }
 
+constexpr size_t kTrianglesAhead = 16;  // of those being set up, memory is asked for
+
 // Bits of a mask of eight; base code may not count on the instruction for it.
 size_t count_lanes(uint32_t mask) {
   constexpr uint64_t kOfFour = 0x4332322132212110;
@@ -251,6 +253,13 @@ void DrawList::flush(const FrameInput& input, Chunk& chunk) const {
   input.kernels->front.setup_triangles(rules_, n, chunk.pending, screen_.data(), chunk.drop_back, stored, masks);
   const auto n_drawn = count_lanes(masks.drawn);
   chunk.triangles.release(kSetupLanes - n_drawn);
+  // Where later groups go has left the caches since the last frame, if there are many: their stores would wait for it.
+  static_assert(kTrianglesAhead <= Arena<RasterTriangle>::kReadable);
+  for (size_t i = 0; i < n_drawn; ++i) {
+    const auto* const later = reinterpret_cast<const char*>(stored + kTrianglesAhead + i);
+    __builtin_prefetch(later, 1);
+    __builtin_prefetch(later + 64, 1);
+  }
   chunk.stats.triangles_dropped += count_lanes(masks.degenerate);
   if (n_drawn > 0) attach(input, masks, stored, chunk);
   chunk.n_pending = 0;

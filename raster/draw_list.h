@@ -21,6 +21,7 @@ namespace pac::raster {
 template <class T>
 class Arena {
  public:
+  static constexpr size_t kReadable = 16;
   // n <= kBlock elements, contiguous, uninitialized; kReadable more may be read.
   T* allocate(size_t n) {
     if (used_ + n > kBlock || block_ == 0) {
@@ -37,7 +38,7 @@ class Arena {
   void reset() { block_ = used_ = 0; }
 
  private:
-  static constexpr size_t kBlock = 4096, kReadable = 1;
+  static constexpr size_t kBlock = 4096;
   std::vector<std::unique_ptr<T[]>> blocks_;
   size_t block_ = 0, used_ = 0;  // blocks in use; elements in the last of them
 };
