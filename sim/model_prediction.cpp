@@ -108,11 +108,17 @@ void ModelPredictor::end_row(int y, PlaneView<const uint32_t> id) {
   const WarpKernels& kernels = kernels_for(isa_)->warp;
   now_[0].end_row(y, kernels);
   if (y % 2 == 0) now_[1].set_half_row(y / 2, now_[0], kernels);
-  if (y % 4 != 0 && y != height_ - 1) return;
+  const bool is_last = y == height_ - 1;
+  if (y % 8 == 4 || is_last) set_surfaces(y, id, 4, 8);
+  if (y % 16 == 8 || is_last) set_surfaces(y, id, 8, 16);
+}
+
+// Of columns `first`, `first` + `step`, ... and the last.
+void ModelPredictor::set_surfaces(int y, PlaneView<const uint32_t> id, int first, int step) {
   const uint32_t* ids = id.row(y);
   uint32_t* to = surface_.row(y);
   const auto set = [&](int x) { to[x] = ids[x] < surfaces_.size() ? surfaces_[ids[x]] : 0; };
-  for (int x = 0; x < width_; x += 4) set(x);
+  for (int x = first; x < width_; x += step) set(x);
   set(width_ - 1);
 }
 

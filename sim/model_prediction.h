@@ -50,8 +50,8 @@ class ModelPredictor {
   // What was kept changes by the difference of two pictures of the same frame: more was decoded of it.
   void add(const Frame420& before, const Frame420& after);
 
-  // The surface that L shows in the frame whose reference was asked for last, at columns and rows divisible by 4 and
-  // in the last of each; until keep().
+  // The surface that L shows in the frame whose reference was asked for last, in the middle of blocks (columns and rows
+  // 8 k + 4) and of macroblocks (16 k + 8), or where that is beyond it in the last column and row; until keep().
   PlaneView<const uint32_t> surface() const { return surface_.view(); }
 
   // The kept difference: luma and chroma, in 1/32.
@@ -65,6 +65,7 @@ class ModelPredictor {
  private:
   void find_row(int y, PlaneView<const float> depth, PlaneView<const uint32_t> id, RowCarrier& luma);
   void end_row(int y, PlaneView<const uint32_t> id);
+  void set_surfaces(int y, PlaneView<const uint32_t> id, int first, int step);
   void carry_row(int y, RowCarrier& luma, RowCarrier& chroma);
   void add_row(int component, int y, const Frame420& base);
 

@@ -117,12 +117,14 @@ inline void surface_keys_row(const uint32_t* id, const float* depth, const Surfa
     return _mm256_or_si256(surface, _mm256_andnot_si256(background, depth_code(u)));
   };
   size_t i = 0;
-  for (; i + 8 <= n; i += 8) {
+  for (; i + 16 <= n; i += 16) {  // a line of the cache
     prefetch(id + i, kAhead);
     prefetch(depth + i, kAhead);
     prefetch(keys + i, kAhead);
     store(keys + i, eight(id + i, depth + i));
+    store(keys + i + 8, eight(id + i + 8, depth + i + 8));
   }
+  for (; i + 8 <= n; i += 8) store(keys + i, eight(id + i, depth + i));
   if (i == n) return;
   uint32_t last_id[8] = {}, last_keys[8];
   float last_depth[8] = {};
@@ -317,12 +319,24 @@ WarpCounts find_half_points(const WarpPlaces& full, const KeyMap& map, size_t n,
 
 // ---- What is smooth ----
 
-// Bits of lanes whose keys do not belong together.
-inline unsigned apart(__m256i a, __m256i b) {
+// 0xFFFFFFFF where keys belong together.
+inline __m256i together(__m256i a, __m256i b) {
   const __m256i from_low = _mm256_add_epi32(_mm256_sub_epi32(a, b), _mm256_set1_epi32(kKeyTolerance));
-  const __m256i together =
-      _mm256_cmpeq_epi32(_mm256_min_epu32(from_low, _mm256_set1_epi32(2 * kKeyTolerance)), from_low);
-  return 0xFFu ^ static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(together)));
+  return _mm256_cmpeq_epi32(_mm256_min_epu32(from_low, _mm256_set1_epi32(2 * kKeyTolerance)), from_low);
+}
+
+// Bits of eight keys that do not belong to the others.
+inline uint64_t apart(__m256i a, __m256i b) {
+  return 0xFFu ^ static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(together(a, b))));
+}
+
+// The same of 32 keys. Packing goes by halves: bytes come as keys 0..3, 8..11, 16..19, 24..27, 4..7 and so on.
+inline uint64_t apart(const uint32_t* a, const uint32_t* b) {
+  const auto eight = [&](int i) { return together(load(a + 8 * i), load(b + 8 * i)); };
+  const __m256i bytes =
+      _mm256_packs_epi16(_mm256_packs_epi32(eight(0), eight(1)), _mm256_packs_epi32(eight(2), eight(3)));
+  const __m256i in_order = _mm256_permutevar8x32_epi32(bytes, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7));
+  return 0xFFFFFFFFu ^ static_cast<unsigned>(_mm256_movemask_epi8(in_order));
 }
 
 void compare_keys(const uint32_t* above, const uint32_t* here, size_t n, uint64_t* right, uint64_t* down) {
@@ -330,16 +344,16 @@ void compare_keys(const uint32_t* above, const uint32_t* here, size_t n, uint64_
     uint64_t to_right = 0, to_below = 0;
     const size_t end = first + 64 < n ? first + 64 : n;
     size_t i = first;
-    for (; i + 8 <= end; i += 8) {
-      const __m256i keys = load(here + i);
-      to_right |= uint64_t{apart(keys, load(here + i + 1))} << (i - first);
-      to_below |= uint64_t{apart(keys, load(above + i))} << (i - first);
+    for (; i + 32 <= end; i += 32) {
+      to_right |= apart(here + i, here + i + 1) << (i - first);
+      to_below |= apart(here + i, above + i) << (i - first);
     }
-    if (i < end) {
-      const uint64_t inside = (uint64_t{1} << (end - i)) - 1;
-      const __m256i keys = load_some(here + i, end - i);
-      to_right |= (apart(keys, load_some(here + i + 1, end - i)) & inside) << (i - first);
-      to_below |= (apart(keys, load_some(above + i, end - i)) & inside) << (i - first);
+    for (; i < end; i += 8) {
+      const size_t rest = end - i < 8 ? end - i : 8;
+      const uint64_t inside = (uint64_t{1} << rest) - 1;
+      const __m256i keys = load_some(here + i, rest);
+      to_right |= (apart(keys, load_some(here + i + 1, rest)) & inside) << (i - first);
+      to_below |= (apart(keys, load_some(above + i, rest)) & inside) << (i - first);
     }
     if (end == n) to_right &= ~(uint64_t{1} << (n - 1 - first));
     right[first / 64] = to_right;
