@@ -162,10 +162,6 @@ inline __m256i in_range(__m256i position_64, __m256i last_64) {
   return _mm256_cmpeq_epi32(_mm256_min_epu32(near, last_64), near);
 }
 
-inline __m256i ramp() {
-  return _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-}
-
 // Minus the states of points that are found: of lanes, so far.
 struct Counters {
   __m256i plain = _mm256_setzero_si256(), inside = _mm256_setzero_si256();

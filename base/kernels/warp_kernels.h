@@ -29,7 +29,8 @@ constexpr uint32_t kKeyBits = 0xFFFF3FFF, kKeySurfaceBits = 0xFFFF0000, kKeySmoo
 // u.
 constexpr int32_t kKeyTolerance = 12;
 
-// The keys of the frame before; those within 5 of its sides can be read and are 0.
+// The keys of the frame before; those within 5 of its sides can be read and are 0, and reading on behind a row ends in
+// the rows below.
 struct KeyMap {
   const uint32_t* keys;  // of pixel (0, 0)
   ptrdiff_t stride;
