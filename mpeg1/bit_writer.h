@@ -32,18 +32,14 @@ class FastBitWriter {
   // `most_bits` bits; the writer rests until take_back().
   class Loan {
    public:
-    // As FastBitWriter::put, of 1..32 bits.
-    void put(uint32_t value, int count) {
+    // The low `count` bits of value, 1..56; higher bits of value are zero. Stores every time: no branch to mispredict.
+    void put(uint64_t value, int count) {
       n_bits_ += count;
-      if (n_bits_ <= 64) {
-        window_ |= static_cast<uint64_t>(value) << (64 - n_bits_);
-        return;
-      }
-      const int rest = n_bits_ - 64;  // 1..31 bits for the next window
-      write64(next_, window_ | static_cast<uint64_t>(value) >> rest);
-      next_ += 8;
-      window_ = static_cast<uint64_t>(value) << (64 - rest);
-      n_bits_ = rest;
+      window_ |= value << (64 - n_bits_);
+      write64(next_, window_);
+      next_ += n_bits_ >> 3;
+      window_ <<= n_bits_ & ~7;  // less than 64
+      n_bits_ &= 7;
     }
 
    private:
@@ -51,12 +47,14 @@ class FastBitWriter {
     Loan(uint8_t* next, uint64_t window, int n_bits) : next_(next), window_(window), n_bits_(n_bits) {}
     uint8_t* next_;
     uint64_t window_;
-    int n_bits_;
+    int n_bits_;  // 0..7
   };
   Loan lend(size_t most_bits) {
-    const size_t most_bytes = most_bits / 8 + 8;
+    const size_t most_bytes = most_bits / 8 + 16;
     if (size_ + most_bytes > bytes_.size()) bytes_.resize(2 * bytes_.size() + most_bytes + 4096);
-    return {bytes_.data() + size_, window_, n_bits_};
+    uint8_t* const at = bytes_.data() + size_;
+    write64(at, window_);
+    return {at + (n_bits_ >> 3), n_bits_ == 64 ? 0 : window_ << (n_bits_ & ~7), n_bits_ & 7};
   }
   void take_back(const Loan& loan) {
     size_ = static_cast<size_t>(loan.next_ - bytes_.data());
@@ -72,7 +70,9 @@ class FastBitWriter {
 
   // All bits of `other` after ours.
   void append(const FastBitWriter& other) {
-    for (size_t i = 0; i + 4 <= other.size_; i += 4) put(load32(other.bytes_.data() + i), 32);
+    size_t at = 0;
+    for (; at + 4 <= other.size_; at += 4) put(load32(other.bytes_.data() + at), 32);
+    for (; at < other.size_; ++at) put(other.bytes_[at], 8);
     uint64_t window = other.window_;
     for (int left = other.n_bits_; left > 0; left -= 32) {
       const int count = left < 32 ? left : 32;
@@ -103,8 +103,8 @@ class FastBitWriter {
   }
 
   std::vector<uint8_t> bytes_;  // size_ of them are written
-  size_t size_ = 0;             // a multiple of 8
-  uint64_t window_ = 0;         // n_bits_ (0..64) from the top down
+  size_t size_ = 0;
+  uint64_t window_ = 0;  // n_bits_ (0..64) from the top down
   int n_bits_ = 0;
 };
 

@@ -123,45 +123,44 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
   int16_t* coefficients = coded_.coefficients + 64 * coded_.n_full;
   clear_block(coefficients);
   struct Prefix {
-    int count = 0, bits = kEndOfBlock.length + kPatternBits;
+    int count = 0, bits = kEndOfBlock.length + kPatternBits, last = -1;
     int64_t saved = 0;  // distortion that the levels take away, less what the bits are worth
   } all, best;
   all.saved = -bit * all.bits;
-  int last = -1;
+  uint64_t kept = 0;
   for (; nonzero != 0; nonzero &= nonzero - 1) {
     const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
     const int level = levels[position], sign = level >> 31, magnitude = (level ^ sign) - sign;
     if (magnitude > kMaxLevel) return false;
-    const int c = dct[natural] < 0 ? -dct[natural] : dct[natural];
     const int value = reconstruct_non_intra(magnitude, weight[position]);
-    if (value == 0) continue;                          // decoders disagree about it
-    const int gain = 8 * value * (2 * c - 8 * value);  // c^2 - (c - 8 value)^2
-    const int run = position - last - 1;
+    if (value == 0) continue;  // decoders disagree about it
+    const int c = std::abs(int{dct[natural]});
+    const int gain = 8 * value * (2 * c - 8 * value);       // c^2 - (c - 8 value)^2
     const bool is_short = position == 0 && magnitude == 1;  // dct_coeff_first
-    const int bits = run_level_bits(run, magnitude) - (is_short ? 1 : 0);
+    const Token token = is_short ? first_one_code(level) : coefficient_code(position - all.last - 1, level);
+    const auto bits = static_cast<int>(token & 31);
     const int64_t saved = gain - bit * bits;
     if (magnitude == 1 && saved <= 0) continue;
     all.saved += saved;
     all.bits += bits;
-    tokens[all.count++] = make_token(run, level);
+    tokens[all.count++] = token;
     coefficients[natural] = static_cast<int16_t>((value ^ sign) - sign);
-    last = position;
+    all.last = position;
+    kept |= uint64_t{1} << position;
     if (all.saved > best.saved) best = all;
   }
   if (best.count == 0) return true;
-  if (best.count != all.count)
-    for (int i = 0, position = -1; i < all.count; ++i) {
-      position += token_run(tokens[i]) + 1;
-      if (i >= best.count) coefficients[kNaturalFromZigzag[position]] = 0;
-    }
-  if (best.count == 1 && token_run(tokens[0]) == 0) {
+  for (uint64_t left = kept & ~uint64_t{1} << best.last; left != 0; left &= left - 1)
+    coefficients[kNaturalFromZigzag[std::countr_zero(left)]] = 0;
+  tokens[best.count] = kEndOfBlockCode;
+  if (best.last == 0) {
     coded_.flat[coded_.n_flat] = coefficients[0];
     coded_.flat_blocks[coded_.n_flat++] = static_cast<uint8_t>(block);
   } else {
     coded_.full_blocks[coded_.n_full++] = static_cast<uint8_t>(block);
   }
-  coded_.n_tokens += best.count;
-  coded_.counts[block] = static_cast<uint8_t>(best.count);
+  coded_.n_tokens += best.count + 1;
+  coded_.counts[block] = static_cast<uint8_t>(best.count + 1);
   coded_.bits += best.bits - kPatternBits;
   coded_.gain += best.saved + bit * best.bits;
   coded_.pattern = static_cast<uint8_t>(coded_.pattern | 32 >> block);

@@ -35,7 +35,7 @@ class FastCoder : private MacroblockPlace {
     int64_t gain = 0;  // distortion that the levels take away
     uint8_t pattern = 0;
     uint8_t counts[kBlocks] = {};
-    Token tokens[64 * kBlocks];
+    Token tokens[65 * kBlocks];
     // Flat blocks have nothing but the first coefficient; the others' coefficients lie in their order.
     size_t n_flat = 0, n_full = 0;
     uint8_t flat_blocks[kBlocks] = {}, full_blocks[kBlocks] = {};

@@ -16,21 +16,12 @@ struct Macroblock {
   uint8_t quantizer = 1;     // quantizer_scale, where there are coefficients
   MotionVector vector;       // of inter; zero otherwise
   int16_t dc[6] = {};        // quantized, of intra: 0..255
-  uint8_t counts[6] = {};    // tokens of each block
+  uint8_t counts[6] = {};    // tokens of each block, its end included
   uint32_t first_token = 0;  // in the band's tokens
 };
 
-// One coefficient after a run of zeros: run 0..63, level -255..255 but not 0.
-using Token = uint16_t;
-inline Token make_token(int run, int level) {
-  return static_cast<Token>(run << 9 | (level + 256));
-}
-inline int token_run(Token token) {
-  return token >> 9;
-}
-inline int token_level(Token token) {
-  return (token & 511) - 256;
-}
+// What stands in the stream for a coefficient after a run of zeros, or end_of_block: code << 5 | length, of 2..28 bits.
+using Token = uint32_t;
 
 class CoefficientStatistics;
 

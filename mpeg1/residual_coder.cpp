@@ -6,6 +6,7 @@
 
 #include "base/kernels/block_kernels.h"
 #include "mpeg1/trellis.h"
+#include "mpeg1/vlc_tables.h"
 
 namespace pac::mpeg1 {
 namespace {
@@ -88,14 +89,21 @@ void dequantize(const int16_t* levels, uint64_t mask, const uint16_t* weight, in
   }
 }
 
+// The levels' codes and the end of the block.
 int append_tokens(const int16_t* levels, uint64_t mask, int last_position, std::vector<Token>& tokens) {
-  Token made[64];
+  Token made[65];
   int count = 0;
+  if (last_position < 0 && (mask & 1) != 0 && (levels[0] == 1 || levels[0] == -1)) {
+    made[count++] = first_one_code(levels[0]);
+    last_position = 0;
+    mask &= mask - 1;
+  }
   for (; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
-    made[count++] = make_token(position - last_position - 1, levels[position]);
+    made[count++] = coefficient_code(position - last_position - 1, levels[position]);
     last_position = position;
   }
+  made[count++] = kEndOfBlockCode;
   tokens.insert(tokens.end(), made, made + count);
   return count;
 }

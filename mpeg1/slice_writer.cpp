@@ -130,31 +130,13 @@ class RowWriter {
     bits_.put(static_cast<uint32_t>(motion.r), r_size);
   }
 
-  // first_is_special: the block is not intra, so that it has a level.
-  PAC_INLINE static void write_tokens(FastBitWriter::Loan& bits, const Token* tokens, int count,
-                                      bool first_is_special) {
+  PAC_INLINE static void write_tokens(FastBitWriter::Loan& bits, const Token* tokens, int count) {
     int i = 0;
-    if (first_is_special && (tokens[0] == make_token(0, 1) || tokens[0] == make_token(0, -1)))
-      bits.put(token_level(tokens[i++]) < 0 ? 3 : 2, 2);  // dct_coeff_first
-    for (; i < count; ++i) {
-      const int run = token_run(tokens[i]), level = token_level(tokens[i]);
-      if (run < kTokenRuns && level > -kTokenLevels && level < kTokenLevels) [[likely]] {
-        const uint32_t entry = kWriting.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)];
-        bits.put(entry >> 5, static_cast<int>(entry & 31));
-      } else {
-        write_escape(bits, run, level);
-      }
+    for (; i + 1 < count; i += 2) {
+      const Token first = tokens[i], second = tokens[i + 1];
+      bits.put(uint64_t{first >> 5} << (second & 31) | second >> 5, static_cast<int>((first & 31) + (second & 31)));
     }
-    bits.put(kEndOfBlock.bits, kEndOfBlock.length);
-  }
-  PAC_INLINE static void write_escape(FastBitWriter::Loan& bits, int run, int level) {
-    bits.put(static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run), 12);
-    if (level > 127)
-      bits.put(static_cast<uint32_t>(level), 16);
-    else if (level < -127)
-      bits.put(0x8000 | static_cast<uint32_t>(level + 256), 16);
-    else
-      bits.put(static_cast<uint32_t>(level) & 255, 8);
+    if (i < count) bits.put(tokens[i] >> 5, static_cast<int>(tokens[i] & 31));
   }
 
   PAC_INLINE void write_dc(FastBitWriter::Loan& bits, int block, int dc) {
@@ -212,14 +194,17 @@ class RowWriter {
     const bool is_intra = macroblock.kind == MacroblockKind::intra;
     const Token* tokens = tokens_ + macroblock.first_token;
     FastBitWriter::Loan bits = bits_.lend(kMostBits);
+    int left = 0;  // tokens that no DC comes before
     for (int block = 0; block < 6; ++block) {
-      if (is_intra)
+      if (is_intra) {
         write_dc(bits, block, macroblock.dc[block]);
-      else if ((macroblock.pattern & 32 >> block) == 0)
-        continue;
-      write_tokens(bits, tokens, macroblock.counts[block], !is_intra);
-      tokens += macroblock.counts[block];
+        write_tokens(bits, tokens, macroblock.counts[block]);
+        tokens += macroblock.counts[block];
+      } else if ((macroblock.pattern & 32 >> block) != 0) {
+        left += macroblock.counts[block];
+      }
     }
+    write_tokens(bits, tokens, left);
     bits_.take_back(bits);
   }
 

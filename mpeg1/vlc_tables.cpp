@@ -144,6 +144,14 @@ constexpr ReadingTables make_reading_tables() {
   return tables;
 }
 
+// [table B.5f]
+constexpr uint32_t escape_code(int run, int level) {
+  const uint32_t escape = static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run);
+  if (level > 127) return (escape << 16 | static_cast<uint32_t>(level)) << 5 | 28;
+  if (level < -127) return (escape << 16 | 0x8000 | static_cast<uint32_t>(level + 256)) << 5 | 28;
+  return (escape << 8 | (static_cast<uint32_t>(level) & 255)) << 5 | 20;
+}
+
 constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
   const int magnitude = level < 0 ? -level : level;
   if (run <= kMaxTableRun && magnitude <= kMaxTableLevel) {
@@ -151,8 +159,7 @@ constexpr uint32_t token_code(const WritingTables& tables, int run, int level) {
     const uint32_t bits = static_cast<uint32_t>(code.bits) << 1 | (level < 0 ? 1u : 0u);
     if (code.length != 0) return bits << 5 | (code.length + 1u);
   }
-  const uint32_t escape = static_cast<uint32_t>(kEscapeCode.bits) << 6 | static_cast<uint32_t>(run);
-  return (escape << 8 | (static_cast<uint32_t>(level) & 255)) << 5 | 20;  // [table B.5f]
+  return escape_code(run, level);
 }
 
 // By how much a code may be longer than that of another row or run.
@@ -190,5 +197,9 @@ constexpr WritingTables make_writing_tables() {
 
 constexpr ReadingTables kReading = make_reading_tables();
 constexpr WritingTables kWriting = make_writing_tables();
+
+uint32_t long_escape_code(int run, int level) {
+  return escape_code(run, level);
+}
 
 }  // namespace pac::mpeg1

@@ -98,6 +98,20 @@ struct WritingTables {
 };
 extern const WritingTables kWriting;
 
+// code << 5 | length, of dct_coeff_next with the sign, escapes included: run 0..63, level -255..255 but not 0. What the
+// table does not hold is an escape.
+uint32_t long_escape_code(int run, int level);
+inline uint32_t coefficient_code(int run, int level) {
+  if (run < kTokenRuns && level > -kTokenLevels && level < kTokenLevels) [[likely]]
+    return kWriting.token[static_cast<size_t>(run)][static_cast<size_t>(level + kTokenLevels)];
+  return long_escape_code(run, level);
+}
+// The same of dct_coeff_first with run 0 and level 1 or -1, and of the end of a block.
+inline uint32_t first_one_code(int level) {
+  return (level < 0 ? 3u : 2u) << 5 | 2;
+}
+constexpr uint32_t kEndOfBlockCode = uint32_t{kEndOfBlock.bits} << 5 | kEndOfBlock.length;
+
 inline size_t row_of_level(int level) {
   return static_cast<size_t>(level <= kMaxTableLevel ? level : kMaxTableLevel + (level < 128 ? 1 : 2));
 }

@@ -114,8 +114,8 @@ class PictureCoder {
     }
     const bool intra = !is_p || bit(kLayout.kind + around(is_intra), is_intra(m)) != 0;
     m.kind = intra ? MacroblockKind::intra : MacroblockKind::inter;
-    if constexpr (Coder::kDecodes) m.first_token = static_cast<uint32_t>(picture_.tokens.size());
-    next_token_ = m.first_token;
+    if constexpr (Coder::kDecodes) m.first_token = static_cast<uint32_t>(picture_.levels.size());
+    next_level_ = m.first_token;
     if (intra) {
       predicted_ = {};
     } else {
@@ -260,8 +260,8 @@ class PictureCoder {
       s.count = count, s.run = run, s.last_size = last_size;
       int level = 0;
       if constexpr (!Coder::kDecodes) {
-        if (count < m.counts[block] && mpeg1::token_run(picture_.tokens[next_token_]) == static_cast<int>(run))
-          level = mpeg1::token_level(picture_.tokens[next_token_]);
+        if (count < m.counts[block] && picture_.levels[next_level_].run == run)
+          level = picture_.levels[next_level_].level;
         if (prices_ != nullptr) price_spot(e, s, block, static_cast<uint32_t>(std::abs(level)));
       }
       uint32_t is_found = level != 0;
@@ -276,10 +276,10 @@ class PictureCoder {
       const uint32_t size = magnitude(s, static_cast<uint32_t>(std::abs(level)));
       const bool negative = coder_.raw(1, level < 0 ? 1 : 0) != 0;
       if constexpr (Coder::kDecodes)
-        picture_.tokens.push_back(
-            mpeg1::make_token(static_cast<int>(run), negative ? -static_cast<int>(size) : static_cast<int>(size)));
+        picture_.levels.push_back({static_cast<uint8_t>(run),
+                                   static_cast<int16_t>(negative ? -static_cast<int>(size) : static_cast<int>(size))});
       else
-        ++next_token_;
+        ++next_level_;
       ++count;
       run = 0;
       last_size = size;
@@ -389,7 +389,7 @@ class PictureCoder {
   PlaneView<const uint32_t> surface_;
   int columns_, rows_, row_ = 0, column_ = 0;
   mpeg1::MacroblockPrices* prices_;
-  size_t next_token_ = 0;
+  size_t next_level_ = 0;
   uint8_t quantizer_ = 0;
   bool has_changed_ = false;
   mpeg1::MotionVector predicted_;

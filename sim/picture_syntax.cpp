@@ -1,5 +1,7 @@
 #include "sim/picture_syntax.h"
 
+#include <cstdlib>
+
 #include "mpeg1/bit_reader.h"
 #include "mpeg1/headers.h"
 #include "mpeg1/motion_vector.h"
@@ -24,7 +26,7 @@ class SyntaxReader {
 
   bool read() {
     picture_.macroblocks.assign(static_cast<size_t>(count_), Macroblock{});
-    picture_.tokens.clear();
+    picture_.levels.clear();
     quantizer_ = static_cast<int>(bits_.read(5));
     if (quantizer_ == 0 || bits_.read(1) != 0) return false;
     do {
@@ -97,10 +99,10 @@ class SyntaxReader {
 
   // Coefficients after zigzag `position`.
   bool read_block(int position, bool first_is_special, uint8_t& count) {
-    const size_t first = picture_.tokens.size();
+    const size_t first = picture_.levels.size();
     bits_.refill();
     if (first_is_special && bits_.peek(1) != 0) {
-      picture_.tokens.push_back(mpeg1::make_token(0, bits_.peek(2) == 2 ? 1 : -1));
+      picture_.levels.push_back({0, static_cast<int16_t>(bits_.peek(2) == 2 ? 1 : -1)});
       bits_.skip(2);
       position = 0;
     }
@@ -121,9 +123,9 @@ class SyntaxReader {
       }
       position += run + 1;
       if (level == 0 || position > 63) return false;
-      picture_.tokens.push_back(mpeg1::make_token(run, level));
+      picture_.levels.push_back({static_cast<uint8_t>(run), static_cast<int16_t>(level)});
     }
-    count = static_cast<uint8_t>(picture_.tokens.size() - first);
+    count = static_cast<uint8_t>(picture_.levels.size() - first);
     return true;
   }
 
@@ -167,7 +169,7 @@ class SyntaxReader {
     if ((type.value & mpeg1::kQuant) != 0) quantizer_ = static_cast<int>(bits_.read(5));
     if (quantizer_ == 0) return false;
     Macroblock& macroblock = picture_.macroblocks[static_cast<size_t>(address_)];
-    macroblock.first_token = static_cast<uint32_t>(picture_.tokens.size());
+    macroblock.first_token = static_cast<uint32_t>(picture_.levels.size());
     return (type.value & mpeg1::kIntra) != 0 ? read_intra(macroblock) : read_inter(type.value, macroblock);
   }
 
@@ -197,11 +199,39 @@ bool read_picture(std::span<const uint8_t> bytes, int columns, int rows, Picture
   return false;
 }
 
+namespace {
+
+// The same macroblock with the codes of its levels, which are appended to `tokens`.
+Macroblock with_tokens(const Macroblock& macroblock, const RunLevel* levels, std::vector<mpeg1::Token>& tokens) {
+  Macroblock coded = macroblock;
+  coded.first_token = static_cast<uint32_t>(tokens.size());
+  const bool is_intra = macroblock.kind == MacroblockKind::intra;
+  for (int block = 0; block < kBlocks; ++block) {
+    if (!is_intra && (macroblock.pattern & 32 >> block) == 0) continue;
+    const size_t before = tokens.size();
+    for (int i = 0; i < macroblock.counts[block]; ++i, ++levels) {
+      const bool is_short = !is_intra && i == 0 && levels->run == 0 && std::abs(levels->level) == 1;
+      tokens.push_back(is_short ? mpeg1::first_one_code(levels->level)
+                                : mpeg1::coefficient_code(levels->run, levels->level));
+    }
+    tokens.push_back(mpeg1::kEndOfBlockCode);
+    coded.counts[block] = static_cast<uint8_t>(tokens.size() - before);
+  }
+  return coded;
+}
+
+}  // namespace
+
 void write_picture(const PictureSyntax& picture, int columns, int rows, Bytes& out) {
   mpeg1::write_picture_header(picture.header, out);
-  const mpeg1::PictureToWrite task{picture.header, columns, rows, rows, picture.macroblocks.data()};
+  std::vector<Macroblock> macroblocks;
+  macroblocks.reserve(picture.macroblocks.size());
+  std::vector<mpeg1::Token> tokens;
+  for (const Macroblock& macroblock : picture.macroblocks)
+    macroblocks.push_back(with_tokens(macroblock, picture.levels.data() + macroblock.first_token, tokens));
+  const mpeg1::PictureToWrite task{picture.header, columns, rows, rows, macroblocks.data()};
   mpeg1::RowBits bits;
-  mpeg1::write_rows(task, picture.tokens.data(), 0, rows, bits);
+  mpeg1::write_rows(task, tokens.data(), 0, rows, bits);
   mpeg1::join_rows({&bits, 1}, out);
 }
 

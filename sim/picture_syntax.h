@@ -12,10 +12,16 @@
 
 namespace pac::sim {
 
+// A coefficient after a run of zeros: run 0..63, level -255..255 but not 0.
+struct RunLevel {
+  uint8_t run;
+  int16_t level;
+};
+
 struct PictureSyntax {
   mpeg1::PictureHeader header;
-  std::vector<mpeg1::Macroblock> macroblocks;  // raster order
-  std::vector<mpeg1::Token> tokens;            // of all of them
+  std::vector<mpeg1::Macroblock> macroblocks;  // raster order; `counts` and `first_token` are of `levels`
+  std::vector<RunLevel> levels;                // of all of them
 };
 
 // `bytes`: a picture header and one slice of the whole picture of columns x rows macroblocks, I or P, nothing behind

@@ -337,8 +337,8 @@ TEST_CASE("the prices of what a picture consists of add up to its packed size") 
       paid += is_coded ? price.coded : price.left_out;
       size_t position = 0;
       for (int left = m.counts[block]; left > 0; --left, ++token, ++position) {
-        for (int run = mpeg1::token_run(syntax.tokens[token]); run > 0; --run) paid += price.zero[position++];
-        const int size = std::abs(mpeg1::token_level(syntax.tokens[token])), listed = std::min(size, 4);
+        for (int run = syntax.levels[token].run; run > 0; --run) paid += price.zero[position++];
+        const int size = std::abs(syntax.levels[token].level), listed = std::min(size, 4);
         paid += price.level[position] + price.size[position][listed - 1] +
                 static_cast<uint64_t>(size - listed) * price.step[position];
         paid += left > 1 ? price.more[position] : price.last[position];
