@@ -94,18 +94,14 @@ FastCoder::Outcome FastCoder::code_errors() {
   const QuantizerSet& set = *task_.residual.non_intra;
   const uint32_t reaching = motion_.fdct_reaching(
       predicted_samples(task_.source, column_, row_, task_.target, column_, row_), set.least_weight[quantizer()], dct_);
-  coded_.n_flat = coded_.n_full = 0;
-  coded_.n_tokens = coded_.bits = 0;
-  coded_.gain = 0;
-  coded_.pattern = 0;
-  std::memset(coded_.counts, 0, sizeof coded_.counts);
+  start_blocks();
   for (int block = 0; block < kBlocks; block += 2) {
     if ((reaching >> block & 3) == 0) continue;
     alignas(64) int16_t levels[128];
     uint64_t nonzero[2];
     task_.residual.kernels->block.quantize(dct_ + 64 * block, set.divide[quantizer()], 2, levels, nonzero);
     for (const int i : {0, 1})
-      if (nonzero[i] != 0 && !choose_levels(block + i, levels + 64 * i, nonzero[i])) return Outcome::too_large;
+      if (nonzero[i] != 0 && !choose_levels<false>(block + i, levels + 64 * i, nonzero[i])) return Outcome::too_large;
   }
   if (coded_.pattern != 0 && !is_worth_coding()) coded_.pattern = 0;
   if (coded_.pattern != 0) reconstruct();
@@ -113,17 +109,55 @@ FastCoder::Outcome FastCoder::code_errors() {
   return Outcome::done;
 }
 
+void FastCoder::start_blocks() {
+  coded_.n_flat = coded_.n_full = 0;
+  coded_.n_tokens = coded_.bits = 0;
+  coded_.gain = 0;
+  coded_.pattern = 0;
+  std::memset(coded_.counts, 0, sizeof coded_.counts);
+}
+
+FastCoder::Outcome FastCoder::code_intra(int column, int row) {
+  alignas(64) static constexpr uint8_t kZeros[16] = {};
+  column_ = column;
+  row_ = row;
+  start_blocks();
+  PredictedSamples samples{};
+  for (const int plane : {0, 1, 2}) {
+    samples.source[plane] = task_.source.at(plane, column_, row_);
+    samples.source_stride[plane] = task_.source.stride[plane];
+    samples.prediction[plane] = kZeros;
+  }
+  motion_.fdct_macroblock(samples, 1, dct_);
+  alignas(64) int16_t levels[64 * kBlocks];
+  uint64_t nonzero[kBlocks];
+  task_.residual.kernels->block.quantize(dct_, task_.residual.intra->divide[quantizer()], kBlocks, levels, nonzero);
+  Macroblock& macroblock = task_.macroblocks[address()];
+  for (int block = 0; block < kBlocks; ++block) {
+    macroblock.dc[block] = static_cast<int16_t>(std::clamp((dct_[64 * block] + 32) >> 6, 0, 255));
+    if (!choose_levels<true>(block, levels + 64 * block, nonzero[block] & ~uint64_t{1})) return Outcome::too_large;
+    coded_.coefficients[64 * block] = static_cast<int16_t>(8 * macroblock.dc[block]);
+  }
+  transform_full(motion_.idct_put);
+  macroblock.kind = MacroblockKind::intra;
+  macroblock.quantizer = static_cast<uint8_t>(quantizer());
+  append_tokens(macroblock);
+  return Outcome::done;
+}
+
 // Levels of 1 that do not pay are left out, then those after the place where the block had better end, if only at its
-// beginning. False: a level has no code.
+// beginning. False: a level has no code. An intra block's first coefficient is none of its business.
+template <bool kIsIntra>
 bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero) {
   const int16_t* dct = dct_ + 64 * block;
-  const uint16_t* weight = task_.residual.non_intra->weight[quantizer()];
+  const QuantizerSet& set = kIsIntra ? *task_.residual.intra : *task_.residual.non_intra;
+  const uint16_t* weight = set.weight[quantizer()];
   const int64_t bit = lambda();
   Token* tokens = coded_.tokens + coded_.n_tokens;
   int16_t* coefficients = coded_.coefficients + 64 * coded_.n_full;
   clear_block(coefficients);
   struct Prefix {
-    int count = 0, bits = kEndOfBlock.length + kPatternBits, last = -1;
+    int count = 0, bits = kIsIntra ? 0 : kEndOfBlock.length + kPatternBits, last = kIsIntra ? 0 : -1;
     int64_t saved = 0;  // distortion that the levels take away, less what the bits are worth
   } all, best;
   all.saved = -bit * all.bits;
@@ -132,11 +166,12 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
     const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
     const int level = levels[position], sign = level >> 31, magnitude = (level ^ sign) - sign;
     if (magnitude > kMaxLevel) return false;
-    const int value = reconstruct_non_intra(magnitude, weight[position]);
+    const int value =
+        kIsIntra ? reconstruct_intra(magnitude, weight[position]) : reconstruct_non_intra(magnitude, weight[position]);
     if (value == 0) continue;  // decoders disagree about it
     const int c = std::abs(int{dct[natural]});
-    const int gain = 8 * value * (2 * c - 8 * value);       // c^2 - (c - 8 value)^2
-    const bool is_short = position == 0 && magnitude == 1;  // dct_coeff_first
+    const int gain = 8 * value * (2 * c - 8 * value);                    // c^2 - (c - 8 value)^2
+    const bool is_short = !kIsIntra && position == 0 && magnitude == 1;  // dct_coeff_first
     const Token token = is_short ? first_one_code(level) : coefficient_code(position - all.last - 1, level);
     const auto bits = static_cast<int>(token & 31);
     const int64_t saved = gain - bit * bits;
@@ -149,11 +184,11 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
     kept |= uint64_t{1} << position;
     if (all.saved > best.saved) best = all;
   }
-  if (best.count == 0) return true;
+  if (!kIsIntra && best.count == 0) return true;
   for (uint64_t left = kept & ~uint64_t{1} << best.last; left != 0; left &= left - 1)
     coefficients[kNaturalFromZigzag[std::countr_zero(left)]] = 0;
   tokens[best.count] = kEndOfBlockCode;
-  if (best.last == 0) {
+  if (!kIsIntra && best.last == 0) {
     coded_.flat[coded_.n_flat] = coefficients[0];
     coded_.flat_blocks[coded_.n_flat++] = static_cast<uint8_t>(block);
   } else {
@@ -175,23 +210,32 @@ bool FastCoder::is_worth_coding() const {
   return coded_.gain > lambda() * (with - without);
 }
 
-void FastCoder::reconstruct() const {
-  const Planes& t = task_.target;
-  const auto samples_of = [&](int block) {
-    uint8_t* at = t.at(block < 4 ? 0 : block - 3, column_, row_);
-    return block < 4 ? at + (block & 1) * 8 + (block >> 1) * 8 * t.stride[0] : at;
-  };
-  const auto stride_of = [&](int block) { return t.stride[block < 4 ? 0 : block - 3]; };
-  for (size_t i = 0; i < coded_.n_flat; ++i)
-    motion_.idct_dc_add(coded_.flat[i], samples_of(coded_.flat_blocks[i]), stride_of(coded_.flat_blocks[i]));
-  if (coded_.n_full == 0) return;
+uint8_t* FastCoder::samples_of(int block) const {
+  uint8_t* at = task_.target.at(block < 4 ? 0 : block - 3, column_, row_);
+  return block < 4 ? at + (block & 1) * 8 + (block >> 1) * 8 * task_.target.stride[0] : at;
+}
+
+template <class Transform>
+void FastCoder::transform_full(Transform&& transform) const {
   uint8_t* samples[kBlocks];
   ptrdiff_t strides[kBlocks];
   for (size_t i = 0; i < coded_.n_full; ++i) {
     samples[i] = samples_of(coded_.full_blocks[i]);
     strides[i] = stride_of(coded_.full_blocks[i]);
   }
-  motion_.idct_add(coded_.coefficients, coded_.n_full, samples, strides);
+  transform(coded_.coefficients, coded_.n_full, samples, strides);
+}
+
+void FastCoder::reconstruct() const {
+  for (size_t i = 0; i < coded_.n_flat; ++i)
+    motion_.idct_dc_add(coded_.flat[i], samples_of(coded_.flat_blocks[i]), stride_of(coded_.flat_blocks[i]));
+  if (coded_.n_full != 0) transform_full(motion_.idct_add);
+}
+
+void FastCoder::append_tokens(Macroblock& macroblock) {
+  std::memcpy(macroblock.counts, coded_.counts, sizeof coded_.counts);
+  macroblock.first_token = static_cast<uint32_t>(band_.tokens.size());
+  band_.tokens.insert(band_.tokens.end(), coded_.tokens, coded_.tokens + coded_.n_tokens);
 }
 
 void FastCoder::describe() {
@@ -200,10 +244,8 @@ void FastCoder::describe() {
   macroblock.vector = vector_;
   macroblock.pattern = coded_.pattern;
   macroblock.quantizer = static_cast<uint8_t>(quantizer());
-  macroblock.first_token = static_cast<uint32_t>(band_.tokens.size());
   if (coded_.pattern != 0) {
-    std::memcpy(macroblock.counts, coded_.counts, sizeof coded_.counts);
-    band_.tokens.insert(band_.tokens.end(), coded_.tokens, coded_.tokens + coded_.n_tokens);
+    append_tokens(macroblock);
   } else if (vector_ == MotionVector{} && may_skip()) {
     macroblock.kind = MacroblockKind::skipped;
   }

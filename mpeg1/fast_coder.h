@@ -1,4 +1,4 @@
-// Macroblocks of P pictures at Effort::fast: one prediction each, one pass over its levels.
+// Macroblocks at Effort::fast: one prediction each, one pass over its levels.
 #pragma once
 
 #include "mpeg1/macroblock_place.h"
@@ -15,6 +15,8 @@ class FastCoder : private MacroblockPlace {
     too_large  // nothing was coded: a level has no code at this quantizer; vector() predicts
   };
   Outcome code(int column, int row);
+  // Without a prediction; done or too_large.
+  Outcome code_intra(int column, int row);
   MotionVector vector() const { return vector_; }
 
  private:
@@ -23,10 +25,17 @@ class FastCoder : private MacroblockPlace {
   void keep_reference();
   MotionVector search(uint32_t still_sad, uint32_t& sad) const;
   Outcome code_errors();
+  void start_blocks();
+  template <bool kIsIntra>
   bool choose_levels(int block, const int16_t* levels, uint64_t nonzero);
   bool is_worth_coding() const;
+  uint8_t* samples_of(int block) const;
+  ptrdiff_t stride_of(int block) const { return task_.target.stride[block < 4 ? 0 : block - 3]; }
+  template <class Transform>
+  void transform_full(Transform&& transform) const;
   void reconstruct() const;
   void describe();
+  void append_tokens(Macroblock& macroblock);
 
   MotionVector vector_;
   // Of the blocks with levels, in the order of the stream.

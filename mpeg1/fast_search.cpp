@@ -6,7 +6,7 @@
 namespace pac::mpeg1 {
 namespace {
 
-constexpr int kMaxSteps = 24, kMaxTried = 32;
+constexpr int kMaxSteps = 24, kMaxTried = 16;
 constexpr uint32_t kPoorSad = 2000;  // 8 a sample: from which on the search looks further
 constexpr int kEnoughNeighbors = 2;  // that have the vector
 
@@ -55,11 +55,11 @@ class FastSearch {
   }
 
   void try_candidates() {
-    MotionVector tried[kMaxTried] = {};
-    int n_tried = 1;  // tried[0] is zero
+    MotionVector tried[kMaxTried];  // zero was, too
+    int n_tried = 0;
     for (int i = 0; i < in_.n_candidates && n_tried < kMaxTried; ++i) {
       const MotionVector v = in_.range.clamp(in_.candidates[i]);
-      bool is_new = true;
+      bool is_new = v != MotionVector{};
       for (int k = 0; k < n_tried; ++k) is_new &= v != tried[k];
       if (!is_new) continue;
       tried[n_tried++] = v;

@@ -36,7 +36,8 @@ class RowCoder : private MacroblockPlace {
   void code_macroblock() {
     task_.macroblocks[address()] = {};
     if (task_.wanted != nullptr) settle_quantizer();
-    for (Attempt& attempt : attempts_) start(attempt, quantizer());
+    if (task_.effort != Effort::fast)
+      for (Attempt& attempt : attempts_) start(attempt, quantizer());
     const bool forced = task_.must_be_intra != nullptr && task_.must_be_intra[address()] != 0;
     if (task_.type == PictureType::I || forced) {
       code_intra();
@@ -64,6 +65,11 @@ class RowCoder : private MacroblockPlace {
 
   void code_intra() {
     best_ = 0;
+    if (task_.effort == Effort::fast && fast_.code_intra(column_, row_) == FastCoder::Outcome::done) {
+      last_quantizer_ = quantizer();
+      return;
+    }
+    start(attempts_[0], quantizer());
     attempt_intra(task_.residual, task_.source, column_, row_, task_.vary_quantizers, attempts_[0]);
     if (task_.vary_quantizers) {
       least_ = intra_cost(attempts_[0]);
@@ -90,12 +96,10 @@ class RowCoder : private MacroblockPlace {
   void code_fast() {
     const FastCoder::Outcome outcome = fast_.code(column_, row_);
     if (outcome == FastCoder::Outcome::done) return;
-    if (outcome == FastCoder::Outcome::intra) {
-      attempt_intra(task_.residual, task_.source, column_, row_, false, attempts_[0]);
-    } else {
-      predict(fast_.vector(), attempts_[0]);
-      attempt_inter(task_.residual, task_.source, column_, row_, false, attempts_[0]);
-    }
+    if (outcome == FastCoder::Outcome::intra) return code_intra();
+    start(attempts_[0], quantizer());
+    predict(fast_.vector(), attempts_[0]);
+    attempt_inter(task_.residual, task_.source, column_, row_, false, attempts_[0]);
     take(attempts_[0]);
   }
 
