@@ -293,7 +293,7 @@ void encode_vertices(const VertexSections& out) {
 }
 
 // Of the sections that may be either, those by tables that save a decoder most time while the stream's sections grow by
-// a twelfth at most; none where these are so few bytes that a table's own would show.
+// a sixteenth at most; none where these are so few bytes that a table's own would show.
 void keep_fastest(Header& header, Sections& sections, Sections& by_tables) {
   struct Candidate {
     Section section;
@@ -313,7 +313,7 @@ void keep_fastest(Header& header, Sections& sections, Sections& by_tables) {
     candidates.push_back({section, static_cast<int64_t>(by_tables[section].size()) - bytes, saved_time});
   }
   if (room < 1024) return;
-  room /= 12;
+  room /= 16;
   for (uint32_t subset = 1; subset < 1u << candidates.size(); ++subset) {
     int64_t growth = 0, saved_time = 0;
     uint8_t tables = 0;

@@ -80,7 +80,7 @@ Mesh dequantize(const QuantizedMesh& mesh);
 
 // What an encoder trades for speed. fast: symbols by tables, in any mesh. balanced: by tables from 16,384 vertices on;
 // in smaller meshes of 512 vertices and more that have colors, normals or texture coordinates, and positions of 13 bits
-// and more, in the sections that gain a decoder most for a twelfth more bytes at most. best: adaptive models
+// and more, in the sections that gain a decoder most for a sixteenth more bytes at most. best: adaptive models
 // everywhere, and predictions are chosen by coding with each, not by estimates: the fewest bytes.
 enum class Effort { fast, balanced, best };
 

@@ -56,7 +56,7 @@ TEST_CASE("streams are the same bytes on every platform and compiler") {
   }
   REQUIRE(fnv.hash() == 0x024fee5000f47a13u);
   REQUIRE(trained.hash() == 0xb14bb8b310685852u);
-  REQUIRE(balanced.hash() == 0x147c3ce9e355988cu);
+  REQUIRE(balanced.hash() == 0x7720a5c178d48d0fu);
   REQUIRE(tables.hash() == 0x969e38b2183fcf96u);
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("choosing predictions by estimates costs next to nothing") {
   }
 }
 
-TEST_CASE("speed costs a small mesh a twelfth of its bytes at most, and nothing where these are few") {
+TEST_CASE("speed costs a small mesh a sixteenth of its bytes at most, and nothing where these are few") {
   int n_faster = 0;
   for (const NamedMesh& entry : mesh_zoo()) {
     if (entry.mesh.vertices.size() >= 16384) continue;
@@ -86,7 +86,7 @@ TEST_CASE("speed costs a small mesh a twelfth of its bytes at most, and nothing 
     if (is_ranked(best) && !is_ranked(balanced)) continue;  // which is not for speed
     n_faster += balanced[3] == 4 ? 1 : 0;
     CAPTURE(entry.name);
-    REQUIRE(12 * 500 * balanced.size() <= 13 * 501 * best.size());
+    REQUIRE(16 * 500 * balanced.size() <= 17 * 501 * best.size());
     if (best.size() < 1024) REQUIRE(balanced[3] != 4);
   }
   REQUIRE(n_faster > 0);
