@@ -169,12 +169,11 @@ void TilePainter::find_transparent(const PaintInput& input) {
 
 // What is opaque or passes its mask.
 void TilePainter::rasterize(const PaintInput& input, SamplePosition origin) {
-  const bool by_triangle = has_masked_ || has_blended_;
-  std::fill_n(depth_, kTilePixels, 1.0f);
-  if (by_triangle || wants_ids(input)) std::fill_n(ids_, kTilePixels, 0u);
-  if (!by_triangle)
+  if (!has_masked_ && !has_blended_)
     return input.kernels->tile.rasterize_all(triangles_.data(), static_cast<uint32_t>(triangles_.size()), origin,
                                              depth_, wants_ids(input) ? ids_ : nullptr);
+  std::fill_n(depth_, kTilePixels, 1.0f);
+  std::fill_n(ids_, kTilePixels, 0u);
   for (size_t i = 0; i < triangles_.size(); ++i) {
     const auto number = static_cast<uint32_t>(i + 1);
     const Surface& surface = (*input.surfaces[0])[triangles_[i]->state[0]];

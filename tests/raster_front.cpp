@@ -298,15 +298,14 @@ TEST_CASE("rasterize_all: a tile's triangles together, many behind others, give 
       alignas(32) float expected_depth[kTilePixels], depth[kTilePixels];
       alignas(32) uint32_t expected_ids[kTilePixels], ids[kTilePixels];
       std::fill_n(expected_depth, kTilePixels, 1.0f);
-      std::fill_n(depth, kTilePixels, 1.0f);
+      std::fill_n(depth, kTilePixels, 0.25f);  // of the tile before
       std::fill_n(expected_ids, kTilePixels, 0u);
-      std::fill_n(ids, kTilePixels, 0u);
+      std::fill_n(ids, kTilePixels, 7u);
       for (uint32_t k = 0; k < list.size(); ++k)
         kernels_for(Isa::scalar)->tile.rasterize(*list[k], k + 1, origin, expected_depth, expected_ids);
       table->tile.rasterize_all(list.data(), static_cast<uint32_t>(list.size()), origin, depth, ids);
       REQUIRE(std::memcmp(expected_ids, ids, sizeof ids) == 0);
       REQUIRE(std::memcmp(expected_depth, depth, sizeof depth) == 0);
-      std::fill_n(depth, kTilePixels, 1.0f);
       table->tile.rasterize_all(list.data(), static_cast<uint32_t>(list.size()), origin, depth, nullptr);
       REQUIRE(std::memcmp(expected_depth, depth, sizeof depth) == 0);
     }

@@ -207,8 +207,8 @@ struct TileKernels {
   // depth, ids: kTileSize * kTileSize.
   void (*rasterize)(const RasterTriangle& triangle, uint32_t id, SamplePosition origin, float* depth, uint32_t* ids);
 
-  // The same for triangles[i] and id i + 1, in order; `depth` holds values up to 1. ids: null where depth is all that
-  // is wanted.
+  // The same for triangles[i] and id i + 1, in order, over depth 1 and id 0: what depth and ids held does not count.
+  // ids: null where depth is all that is wanted.
   void (*rasterize_all)(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
                         uint32_t* ids);
 

@@ -40,6 +40,8 @@ void rasterize(const RasterTriangle& t, uint32_t id, SamplePosition origin, floa
 
 void rasterize_all(const RasterTriangle* const* triangles, uint32_t n, SamplePosition origin, float* depth,
                    uint32_t* ids) {
+  std::fill_n(depth, kTileSize * kTileSize, 1.0f);
+  if (ids != nullptr) std::fill_n(ids, kTileSize * kTileSize, 0u);
   for (uint32_t i = 0; i < n; ++i) rasterize(*triangles[i], i + 1, origin, depth, ids);
 }
 
