@@ -11,9 +11,9 @@ namespace {
 
 // Where the checksum stands, by the header's layout (FORMAT.md section 2).
 size_t checksum_offset(const std::vector<uint8_t>& bytes) {
-  if (bytes.size() < 6) return bytes.size();
-  const uint8_t flags = bytes[4];
-  size_t at = bytes[3] >= 4 ? 7 : 6;  // from version 4 on there is a byte more
+  if (bytes.size() < 7) return bytes.size();
+  const uint8_t flags = bytes[4], features = bytes[3] == 6 ? bytes[6] : 0;
+  size_t at = bytes[3] == 6 ? 8 : bytes[3] >= 4 ? 7 : 6;  // from version 4 on there is a byte more, in version 6 two
   const auto number = [&] {
     uint64_t value = 0;
     for (int shift = 0; at < bytes.size(); shift += 7) {
@@ -26,6 +26,8 @@ size_t checksum_offset(const std::vector<uint8_t>& bytes) {
   at += ((flags & 16) != 0 ? 1u : 0u) + ((flags & 32) != 0 ? 13u : 0u) + ((flags & 128) != 0 ? 2u : 0u);
   const uint64_t used = number(), split = number(), isolated = number(), faces = number();
   number();
+  const bool degenerate = (features & 1) != 0;
+  if (degenerate) number();
   const uint64_t highest_material = number();
   const bool constant = (flags & 2) != 0, some = used + isolated > 0;
   if (constant) at += 4;
@@ -37,7 +39,8 @@ size_t checksum_offset(const std::vector<uint8_t>& bytes) {
                           some && (flags & 32) != 0,
                           highest_material > 0,
                           faces > 0 && (flags & 128) != 0,
-                          some && (flags & 1) != 0};
+                          some && (flags & 1) != 0,
+                          degenerate};
   for (const bool size : present)
     if (size) number();
   return at;
