@@ -22,23 +22,27 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
-enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2, kRanked = 4 };
+enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2, kRanked = 4, kPartsBySize = 8 };
 
 // Version 4 is there for tables: without any it would be version 3. Version 5 says how positions are coded that tables
-// do not code. Version 6 is there for degenerate faces and ranked points and tells all of it.
+// do not code. Version 6 is there for degenerate faces, ranked points and parts that repeat by size, and tells all of
+// it.
 void parse_tables(ByteReader& reader, uint8_t version, uint8_t& features, Header& header) {
   constexpr uint32_t kMayBe =
       1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
   header.tables = reader.u8();
   if (version == kVersionWithFeatures) {
     features = reader.u8();
-    if ((features & (kHasDegenerate | kRanked)) == 0 || (features & ~(kHasDegenerate | kChooses | kRanked)) != 0)
+    constexpr uint8_t kNeedVersion = kHasDegenerate | kRanked | kPartsBySize;
+    if ((features & kNeedVersion) == 0 || (features & ~(kNeedVersion | kChooses)) != 0)
       reader.fail(Error::corrupt, "features are unknown, or none that needs this version");
     header.chooses = (features & kChooses) != 0;
     header.ranked = (features & kRanked) != 0;
+    header.parts_repeat_by_size = (features & kPartsBySize) != 0;
   }
   if ((header.tables == 0 && version == kVersionWithTables) ||
-      (header.by_tables(kPositions) && (header.chooses || header.ranked)) || (header.tables & ~kMayBe) != 0)
+      (header.by_tables(kPositions) && (header.chooses || header.ranked || header.parts_repeat_by_size)) ||
+      (header.tables & ~kMayBe) != 0)
     reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
 }
 
@@ -176,7 +180,8 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
   if (header.version() != kVersion) out.push_back(header.tables);
   if (header.version() == kVersionWithFeatures)
     out.push_back(static_cast<uint8_t>((header.n_degenerate > 0 ? kHasDegenerate : 0) |
-                                       (header.chooses ? kChooses : 0) | (header.ranked ? kRanked : 0)));
+                                       (header.chooses ? kChooses : 0) | (header.ranked ? kRanked : 0) |
+                                       (header.parts_repeat_by_size ? kPartsBySize : 0)));
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
@@ -217,7 +222,8 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   parse_counts(reader, features, header);
   if (header.trained && header.n_vertices() == 0) reader.fail(Error::corrupt, "models are trained for no vertex");
   if (header.chooses && !header.has(kPositions)) reader.fail(Error::corrupt, "positions that are not there choose");
-  if (header.ranked && !header.has(kConnectivity)) reader.fail(Error::corrupt, "points without faces are ranked");
+  if ((header.ranked || header.parts_repeat_by_size) && !header.has(kConnectivity))
+    reader.fail(Error::corrupt, "points without faces are ranked or repeat");
   if (header.constant_color)
     for (uint8_t& channel : header.color) channel = reader.u8();
   uint64_t end = 0;

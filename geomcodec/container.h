@@ -47,17 +47,18 @@ struct Header {
   uint32_t highest_material = 0;
   uint8_t color[4] = {255, 255, 255, 255};  // with constant_color: everyone's
   std::array<uint32_t, kSections> section_bytes = {};
-  uint8_t tables = 0;    // bit s: section s is coded by tables; only the first six but seams may be
-  bool chooses = false;  // positions, not coded by tables: a symbol tells what residuals start from
-  bool ranked = false;   // positions, not coded by tables: in the order of point_order.h
+  uint8_t tables = 0;                 // bit s: section s is coded by tables; only the first six but seams may be
+  bool chooses = false;               // positions, not coded by tables: a symbol tells what residuals start from
+  bool ranked = false;                // positions, not coded by tables: in the order of point_order.h
+  bool parts_repeat_by_size = false;  // positions, not coded by tables: as Topology::parts_repeat_by_size
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
   uint8_t version() const {
-    return n_degenerate > 0 || ranked ? kVersionWithFeatures
-           : chooses                  ? kVersionThatChooses
-           : tables != 0              ? kVersionWithTables
-                                      : kVersion;
+    return n_degenerate > 0 || ranked || parts_repeat_by_size ? kVersionWithFeatures
+           : chooses                                          ? kVersionThatChooses
+           : tables != 0                                      ? kVersionWithTables
+                                                              : kVersion;
   }
   bool by_tables(Section section) const { return (tables >> section & 1) != 0; }
   // Whether the fields above leave anything for a section to say.

@@ -184,6 +184,7 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
         header.by_tables(kConnectivity), bytes.size());
     if (!decoded) return at(decoded.failure(), stream.section_offset(kConnectivity));
     points = std::move(*decoded);
+    points.parts_repeat_by_size = header.parts_repeat_by_size;
   }
   if (header.has(kDegenerate)) {
     const auto done = decode_degenerate_faces(stream.section[kDegenerate], header.n_degenerate, points);

@@ -1,5 +1,6 @@
 // encode() and reorder(): walk the faces, then code what hangs on them in the walk's order.
 #include <algorithm>
+#include <cstdlib>
 
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
@@ -147,9 +148,39 @@ Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
   return is_plain || is_small ? Coding::adaptive : Coding::either;
 }
 
+// How many points are within a step of where the part says that they repeat.
+uint64_t count_repeated(const Topology& points, std::span<const Position> positions) {
+  PositionParts parts(points);
+  uint64_t n_repeated = 0;
+  for (uint32_t v = 1; v < points.n_vertices; ++v) {
+    const uint32_t lag = parts.lag(v);
+    if (lag == 0 || lag >= v) continue;
+    const uint32_t anchor = parts.anchor(v);
+    bool repeated = true;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int expected = positions[anchor][axis] + positions[v - lag][axis] - positions[anchor - lag][axis];
+      repeated &= std::abs(positions[v][axis] - expected) <= 1;
+    }
+    n_repeated += repeated ? 1 : 0;
+  }
+  return n_repeated;
+}
+
+// Parts that are where the last one of as many points has them, moved, more than where the part before has: copies of a
+// thing among others.
+void find_copies(Walked& walked) {
+  if (PositionParts(walked.points).count() < 3) return;
+  const std::vector<Position> positions = positions_of(walked);
+  const uint64_t by_order = count_repeated(walked.points, positions);
+  walked.points.parts_repeat_by_size = true;
+  const uint64_t by_size = count_repeated(walked.points, positions);
+  walked.points.parts_repeat_by_size = 8 * by_size > walked.points.n_vertices && 8 * by_size > 9 * by_order;
+}
+
 // Whether positions repeat, by rows or by parts, which only the other coding predicts: many vertices of small parts
 // that are where the part before has them.
 bool repeats(const Walked& walked) {
+  if (walked.points.parts_repeat_by_size) return true;
   const std::vector<Position> positions = positions_of(walked);
   PositionParts parts(walked.points);
   uint64_t n_repeated = 0;
@@ -228,6 +259,7 @@ void take_positions(PositionSection coded, bool ranked, const VertexSections& ou
   out.sections[kPositions] = std::move(coded.bytes);
   out.header.chooses = coded.chooses;
   out.header.ranked = ranked;
+  out.header.parts_repeat_by_size = out.walked.points.parts_repeat_by_size;
 }
 
 // What telling it takes in the header, and a decoder some time: it should gain a little more.
@@ -329,7 +361,7 @@ void keep_fastest(Header& header, Sections& sections, Sections& by_tables) {
   }
   for (const Candidate& candidate : candidates)
     if (header.by_tables(candidate.section)) sections[candidate.section] = std::move(by_tables[candidate.section]);
-  if (header.by_tables(kPositions)) header.chooses = header.ranked = false;
+  if (header.by_tables(kPositions)) header.chooses = header.ranked = header.parts_repeat_by_size = false;
 }
 
 }  // namespace
@@ -339,6 +371,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   const Coding coding = coding_for(mesh, options.effort);
   Walked walked = walk(mesh, coding);
   Header header = header_of(mesh, walked, options);
+  if (options.effort != Effort::fast) find_copies(walked);
   if (coding == Coding::tables) choose_tables(walked, options.effort, header);
   Sections sections, by_tables;
   by_tables[kConnectivity] = std::move(walked.connectivity_by_tables);

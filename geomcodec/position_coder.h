@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -57,7 +58,7 @@ inline void order_by_normal(const std::array<int64_t, 3>& normal, size_t (&order
 // Where a mesh is made of equal parts: parts (seeds of the walk) by their first vertex.
 class PositionParts {
  public:
-  explicit PositionParts(const Topology& topology) {
+  explicit PositionParts(const Topology& topology) : by_size_(topology.parts_repeat_by_size) {
     uint32_t n_seen = 0;
     for (uint32_t face = 0; face < topology.n_faces(); ++face) {
       const uint32_t first = topology.face_first[face], gate = topology.twin[first];
@@ -67,18 +68,40 @@ class PositionParts {
         n_seen = std::max(n_seen, topology.corner_vertex[corner] + 1);
     }
     end_ = n_seen;
+    find_lags();
   }
-  // For vertices in ascending order: how many vertices the part before had, 0 if there is none.
+  size_t count() const { return start_.size(); }
+  // For vertices in ascending order: by how much the number of the one that tells where it is expected is lower; 0 if
+  // there is none.
   uint32_t lag(uint32_t vertex) {
     while (part_ + 1 < start_.size() && start_[part_ + 1] <= vertex) ++part_;
-    return part_ == 0 || vertex >= end_ ? 0 : start_[part_] - start_[part_ - 1];
+    if (vertex >= end_ || (by_size_ && is_first(vertex))) return 0;
+    return lag_[part_];
   }
   bool is_first(uint32_t vertex) const { return start_[part_] == vertex; }
+  // The vertex that moved as this one did: the one before it, or with parts of a size the first one of its part.
+  uint32_t anchor(uint32_t vertex) const { return by_size_ ? start_[part_] : vertex - 1; }
 
  private:
-  std::vector<uint32_t> start_;
+  // To the part before, or to the last one with as many vertices.
+  void find_lags() {
+    std::unordered_map<uint32_t, uint32_t> last;  // by size
+    for (size_t part = 0; part < start_.size(); ++part) {
+      if (!by_size_) {
+        lag_.push_back(part == 0 ? 0 : start_[part] - start_[part - 1]);
+        continue;
+      }
+      const uint32_t size = (part + 1 < start_.size() ? start_[part + 1] : end_) - start_[part];
+      const auto [before, is_new] = last.try_emplace(size, start_[part]);
+      lag_.push_back(is_new ? 0 : start_[part] - before->second);
+      before->second = start_[part];
+    }
+  }
+
+  std::vector<uint32_t> start_, lag_;
   uint32_t end_ = 0;
   size_t part_ = 0;
+  bool by_size_;
 };
 
 template <class Coder>
@@ -390,12 +413,13 @@ void PositionCoder<Coder>::code(uint32_t v, const Stencil& stencil, std::span<Po
     return;
   }
 
-  // v moved from the vertex before as their counterparts in the part before did.
+  // v moved from the anchor as their counterparts did.
+  const uint32_t anchor = weights_.period != 0 ? v - 1 : parts_.anchor(v);
   Prediction repeated;
   repeated.basis = kRepeated;
   for (size_t axis = 0; axis < 3; ++axis)
     repeated.at[axis] =
-        std::clamp(positions[v - 1][axis] + positions[v - lag][axis] - positions[v - lag - 1][axis], 0, mask_);
+        std::clamp(positions[anchor][axis] + positions[v - lag][axis] - positions[anchor - lag][axis], 0, mask_);
   int32_t(&error)[2] = error_[weights_.period == 0 && parts_.is_first(v) ? 1 : 0];
   Prediction used = error[1] < error[0] ? repeated : prediction;
   code_position(v, stencil, used, positions);

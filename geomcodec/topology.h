@@ -20,6 +20,8 @@ struct Topology {
   uint32_t n_vertices = 0;            // those that faces use
   uint32_t n_degenerate_corners =
       0;  // the last ones, of degenerate faces (degenerate_faces.h): stencils do not see them
+  // Parts of as many points as one before are expected where that is, moved (PositionParts).
+  bool parts_repeat_by_size = false;
   // Every face has three corners, or four: then numbers alone tell which corners follow.
   bool all_triangles = false, all_quads = false;
 

@@ -301,10 +301,10 @@ class Header(Fields):  # section 2
         self.tables = self.byte() if b[3] > 3 else 0
         features = self.byte() if b[3] == 6 else 0
         if b[3] == 6:
-            assert features & 5 and features < 8
+            assert features & 13 and features < 16
             self.chooses = features & 2 > 0
-        self.ranked = features & 4 > 0
-        assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if self.chooses or self.ranked else 0x3D) == 0
+        self.ranked, self.by_size = features & 4 > 0, features & 8 > 0
+        assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if features & 14 or self.chooses else 0x3D) == 0
         self.bits = self.byte()
         self.priors = read_priors() if self.flags & 64 else None
         self.origin, self.step = (0.0,) * 3, (1.0,) * 3
@@ -322,7 +322,7 @@ class Header(Fields):  # section 2
         self.corners, self.triangles = extra + 3 * self.faces, extra == 0
         self.degenerate = self.varint() if features & 1 else 0
         assert not features & 1 or 0 < self.degenerate < self.faces
-        assert not self.ranked or self.faces
+        assert not features & 12 or self.faces
         self.highest = self.varint()
         self.color = None
         if self.flags & 2:
@@ -806,14 +806,23 @@ class Positions:  # section 6
             if (gate is None or mesh.face_of[gate] >= f) and (not self.parts or self.parts[-1] != seen):
                 self.parts.append(seen)
             seen = max([seen] + [x + 1 for x in self.point[first : first + n]])
+        self.lags, last = [], {}
+        for i, first in enumerate(self.parts):
+            size = (self.parts[i + 1] if i + 1 < len(self.parts) else seen) - first
+            before = last.get(size) if self.h.by_size else self.parts[i - 1] if i else None
+            self.lags.append(0 if before is None else first - before)
+            last[size] = first
 
-    def lag(self, v):
+    def lag(self, v):  # and whether v is the first of a part, and what moved as it did
         if self.period:
-            return self.period, False
+            return self.period, False, v - 1
         if v >= self.h.points:
-            return 0, False
+            return 0, False, None
         part = max(i for i, first in enumerate(self.parts) if first <= v)
-        return (self.parts[part] - self.parts[part - 1] if part else 0), self.parts[part] == v
+        first = self.parts[part]
+        if self.h.by_size:
+            return (0 if first == v else self.lags[part]), False, first
+        return self.lags[part], first == v, v - 1
 
     def predict(self, s, v):
         clamp = lambda x: max(0, min(self.mask, x))
@@ -852,10 +861,10 @@ class Positions:  # section 6
         plain = self.predict(s, v)
         if self.tables:
             return self.code(v, s, plain)
-        lag, first = self.lag(v)
+        lag, first, anchor = self.lag(v)
         if lag == 0 or lag >= v:
             return self.code(v, s, plain)
-        other = [max(0, min(self.mask, self.at[v - 1][i] + self.at[v - lag][i] - self.at[v - lag - 1][i])) for i in range(3)]
+        other = [max(0, min(self.mask, self.at[anchor][i] + self.at[v - lag][i] - self.at[anchor - lag][i])) for i in range(3)]
         error = self.error[first]
         self.code(v, s, (other, [0, 1, 2], [0, 0, 0], 0, 6) if error[1] < error[0] else plain)
         for k, prediction in enumerate((plain[0], other)):

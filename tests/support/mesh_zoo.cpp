@@ -353,6 +353,30 @@ QuantizedMesh pin_mesh(uint32_t segments, uint32_t rings, int position_bits) {
   return result;
 }
 
+QuantizedMesh copies_mesh(uint32_t count) {
+  QuantizedMesh mesh;
+  mesh.position_bits = 14;
+  Random random(41);
+  for (uint32_t i = 0; i < count; ++i) {
+    const bool odd = i % 7 == 6;
+    const uint32_t side = odd ? 2 + random.below(4) : i % 2 == 0 ? 5 : 3;
+    const auto first = static_cast<uint32_t>(mesh.vertices.size());
+    for (uint32_t y = 0; y < side; ++y)
+      for (uint32_t x = 0; x < side; ++x) {
+        const uint32_t bend = (x * x * 37 + y * y * y * 23 + x * y * 11 + (odd ? random.below(50) : 0)) % 300;
+        add_vertex(mesh, 3 * 301 * i / 8 + 67 * x + random.below(2), 500 + 71 * y + 13 * x + random.below(2),
+                   90 + bend);
+      }
+    for (uint32_t y = 0; y + 1 < side; ++y)
+      for (uint32_t x = 0; x + 1 < side; ++x) {
+        const uint32_t a = first + y * side + x;
+        add_face(mesh, {a, a + 1, a + side + 1});
+        add_face(mesh, {a, a + side + 1, a + side});
+      }
+  }
+  return mesh;
+}
+
 QuantizedMesh irregular_mesh(uint32_t side) {
   QuantizedMesh mesh;
   mesh.position_bits = 14;
@@ -412,6 +436,8 @@ std::vector<NamedMesh> mesh_zoo() {
   add("random indices", random_soup(500, 900, 3));
   add("random polygons", random_soup(60, 300, 9));
   add("1000 equal quads", equal_quads(1000));
+  add("copies among others", copies_mesh(18));
+  add("copies with hard edges", with_attributes(with_seams(copies_mesh(40), 9), 8, 0));
   add("fins on one edge", fins(200));
   add("bow-tie", bow_tie(12));
   add("faces in random order", shuffled(wave_mesh(30, 20, true)));

@@ -20,6 +20,8 @@ std::vector<NamedMesh> mesh_zoo();
 geomcodec::QuantizedMesh wave_mesh(uint32_t columns, uint32_t rows, bool triangles);
 
 // A closed body of revolution of 2 * segments * rings triangles or segments * rings quads plus caps, shaded.
+// Copies of two things in turn and some odd ones, moved by no whole steps.
+geomcodec::QuantizedMesh copies_mesh(uint32_t count);
 // A grid of side x side points on a curved surface under triangles whose edges were flipped at random.
 geomcodec::QuantizedMesh irregular_mesh(uint32_t side);
 geomcodec::QuantizedMesh pin_mesh(uint32_t segments, uint32_t rings, int position_bits);
