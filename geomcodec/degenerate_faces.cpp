@@ -80,10 +80,26 @@ void add_face(Kind kind, uint32_t corner, Topology& topology) {
   topology.face_first.push_back(first + 3);
 }
 
-// Where the whole mesh is told to be quadrilaterals it is no longer.
-void count_faces(uint32_t n_degenerate, Topology& topology) {
-  topology.n_degenerate_corners = 3 * n_degenerate;
-  if (n_degenerate > 0) topology.all_quads = false;
+// Tells n triangles by the walked edges and adds them; how many it could not. next (encoder): whether the edge between
+// two points has another one, and its kind.
+template <class Coder, class Next>
+uint32_t code_faces(Coder& coder, uint32_t n, Topology& topology, Next&& next) {
+  PlacementModels<Coder> models(coder, topology.n_vertices);
+  const uint32_t n_walked = topology.n_corners();
+  uint32_t left = n;
+  for (uint32_t corner = 0; corner < n_walked && left > 0 && !coder.failed(); ++corner) {
+    if (!asks(topology, corner)) continue;
+    const uint32_t from = topology.corner_vertex[corner], to = topology.corner_vertex[topology.next(corner)];
+    for (uint32_t before = 0; left > 0 && !coder.failed(); ++before, --left) {
+      uint32_t kind = 0;
+      const bool wanted = next(from, to, kind);
+      if (!models.another(from, to, before, wanted)) break;
+      add_face(models.kind(kind), corner, topology);
+    }
+  }
+  topology.n_degenerate_corners = 3 * (n - left);
+  if (n > left) topology.all_quads = false;  // where it was told to be one of quadrilaterals
+  return left;
 }
 
 // The degenerate triangles that are left to tell, by their points.
@@ -196,51 +212,29 @@ std::vector<uint8_t> find_degenerate_faces(std::span<const uint32_t> indices, st
 std::vector<uint8_t> encode_degenerate_faces(std::span<const uint32_t> indices, std::span<const Face> faces,
                                              std::span<const uint8_t> degenerate, Topology& topology,
                                              WalkOrder& order) {
-  const auto n_degenerate = static_cast<uint32_t>(std::count(degenerate.begin(), degenerate.end(), uint8_t{1}));
   uint32_t n_points = 0;
   for (const uint32_t point : indices) n_points = std::max(n_points, point + 1);
   FaceSource source(indices, faces, degenerate, n_points);
   RangeEncoder coder;
-  PlacementModels<RangeEncoder> models(coder, topology.n_vertices);
-  uint32_t left = n_degenerate;
-  const uint32_t n_walked = topology.n_corners();
-  for (uint32_t corner = 0; corner < n_walked && left > 0; ++corner) {
-    if (!asks(topology, corner)) continue;
-    const uint32_t from = topology.corner_vertex[corner], to = topology.corner_vertex[topology.next(corner)];
-    const uint32_t start = order.vertex[from], end = order.vertex[to];
-    for (uint32_t before = 0; left > 0; ++before) {
-      const uint32_t face = source.take(start, end);
-      if (!models.another(from, to, before, face != kNone)) break;
-      uint32_t first_corner = 0;
-      const Kind kind = models.kind(kind_of(source.corners(face), start, end, first_corner));
-      add_face(kind, corner, topology);
-      order.face.push_back(face);
-      order.first_corner.push_back(first_corner);
-      --left;
-    }
-  }
+  const auto n = static_cast<uint32_t>(std::count(degenerate.begin(), degenerate.end(), uint8_t{1}));
+  const uint32_t left = code_faces(coder, n, topology, [&](uint32_t from, uint32_t to, uint32_t& kind) {
+    const uint32_t start = order.vertex[from], end = order.vertex[to], face = source.take(start, end);
+    if (face == kNone) return false;
+    uint32_t first_corner = 0;
+    kind = kind_of(source.corners(face), start, end, first_corner);
+    order.face.push_back(face);
+    order.first_corner.push_back(first_corner);
+    return true;
+  });
   PAC_ASSERT(left == 0);
-  count_faces(n_degenerate, topology);
   return coder.finish();
 }
 
 Result<void> decode_degenerate_faces(std::span<const uint8_t> bytes, uint32_t n_degenerate, Topology& topology) {
   RangeDecoder coder(bytes);
-  PlacementModels<RangeDecoder> models(coder, topology.n_vertices);
-  uint32_t left = n_degenerate;
-  const uint32_t n_walked = topology.n_corners();
-  for (uint32_t corner = 0; corner < n_walked && left > 0; ++corner) {
-    if (!asks(topology, corner)) continue;
-    const uint32_t from = topology.corner_vertex[corner], to = topology.corner_vertex[topology.next(corner)];
-    for (uint32_t before = 0; left > 0 && models.another(from, to, before, false); ++before) {
-      if (coder.failed()) return Failure{Error::corrupt, 0, "degenerate faces are damaged"};
-      add_face(models.kind(0), corner, topology);
-      --left;
-    }
-  }
+  const uint32_t left = code_faces(coder, n_degenerate, topology, [](uint32_t, uint32_t, uint32_t&) { return false; });
   if (left > 0 || coder.failed()) return Failure{Error::corrupt, 0, "degenerate faces are damaged"};
   if (!coder.ends_exactly()) return Failure{Error::corrupt, 0, "degenerate faces do not end where the header says"};
-  count_faces(n_degenerate, topology);
   return {};
 }
 
