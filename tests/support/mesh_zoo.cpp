@@ -363,9 +363,9 @@ QuantizedMesh copies_mesh(uint32_t count) {
     const auto first = static_cast<uint32_t>(mesh.vertices.size());
     for (uint32_t y = 0; y < side; ++y)
       for (uint32_t x = 0; x < side; ++x) {
-        const uint32_t bend = (x * x * 37 + y * y * y * 23 + x * y * 11 + (odd ? random.below(50) : 0)) % 300;
-        add_vertex(mesh, 3 * 301 * i / 8 + 67 * x + random.below(2), 500 + 71 * y + 13 * x + random.below(2),
-                   90 + bend);
+        const uint32_t noise = odd ? random.below(50) : 0, left = random.below(2), low = random.below(2);
+        const uint32_t bend = (x * x * 37 + y * y * y * 23 + x * y * 11 + noise) % 300;
+        add_vertex(mesh, 3 * 301 * i / 8 + 67 * x + left, 500 + 71 * y + 13 * x + low, 90 + bend);
       }
     for (uint32_t y = 0; y + 1 < side; ++y)
       for (uint32_t x = 0; x + 1 < side; ++x) {
