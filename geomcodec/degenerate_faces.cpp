@@ -21,6 +21,16 @@ PointPair pair_of(uint32_t a, uint32_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
+// A triangle whose corners lie at these, by its number.
+struct ThinFace {
+  PointPair points;
+  uint32_t face;
+  bool operator<(const ThinFace& o) const {
+    if (points < o.points || o.points < points) return points < o.points;
+    return face < o.face;
+  }
+};
+
 // The points of a triangle's corners, if they are at most two.
 bool is_thin(const uint32_t* corner, PointPair& points) {
   const auto [low, high] = std::minmax({corner[0], corner[1], corner[2]});
@@ -115,7 +125,7 @@ class FaceSource {
     }
     std::sort(left_.begin(), left_.end());
     n_taken_.resize(left_.size());
-    for (const Left& left : left_) ++first_[left.points.low + 1];
+    for (const ThinFace& left : left_) ++first_[left.points.low + 1];
     for (size_t p = 0; p < n_points; ++p) first_[p + 1] += first_[p];
   }
   // The next one on the edge a - b, or at one of its ends, that was not taken: its face, or kNone.
@@ -123,7 +133,7 @@ class FaceSource {
     const PointPair edge = pair_of(a, b);
     for (const PointPair points : {edge, PointPair{edge.low, edge.low}, PointPair{edge.high, edge.high}}) {
       const auto first = left_.begin() + first_[points.low], last = left_.begin() + first_[points.low + 1];
-      const auto run = std::lower_bound(first, last, Left{points, 0});
+      const auto run = std::lower_bound(first, last, ThinFace{points, 0});
       if (run == last || points < run->points) continue;
       uint32_t& n_taken = n_taken_[static_cast<size_t>(run - left_.begin())];
       const auto next = run + n_taken;
@@ -136,17 +146,9 @@ class FaceSource {
   const uint32_t* corners(uint32_t face) const { return &indices_[faces_[face].first]; }
 
  private:
-  struct Left {
-    PointPair points;
-    uint32_t face;
-    bool operator<(const Left& o) const {
-      if (points < o.points || o.points < points) return points < o.points;
-      return face < o.face;
-    }
-  };
   std::span<const uint32_t> indices_;
   std::span<const Face> faces_;
-  std::vector<Left> left_;       // ascending
+  std::vector<ThinFace> left_;   // ascending
   std::vector<uint32_t> first_;  // per point: those whose lower point it is are left_[first_[p]] .. [first_[p + 1] - 1]
   std::vector<uint32_t> n_taken_;  // at the first one of equal points: how many of these
 };
@@ -169,19 +171,15 @@ Kind kind_of(const uint32_t* corner, uint32_t start, uint32_t end, uint32_t& fir
 
 std::vector<uint8_t> find_degenerate_faces(std::span<const uint32_t> indices, std::span<const Face> faces,
                                            uint32_t n_points) {
-  struct Thin {
-    PointPair points;
-    uint32_t face;
-  };
-  std::vector<Thin> thin;
+  std::vector<ThinFace> thin;
   for (uint32_t f = 0; f < faces.size(); ++f) {
     PointPair points;
     if (faces[f].count == 3 && is_thin(&indices[faces[f].first], points)) thin.push_back({points, f});
   }
   if (thin.empty()) return {};
-  std::sort(thin.begin(), thin.end(), [](const Thin& a, const Thin& b) { return a.points < b.points; });
+  std::sort(thin.begin(), thin.end());
   std::vector<uint8_t> concerned(n_points), is_thin_face(faces.size()), used(n_points), has_edge(thin.size());
-  for (const Thin& t : thin) concerned[t.points.low] = concerned[t.points.high] = is_thin_face[t.face] = 1;
+  for (const ThinFace& t : thin) concerned[t.points.low] = concerned[t.points.high] = is_thin_face[t.face] = 1;
   for (uint32_t f = 0; f < faces.size(); ++f) {
     if (is_thin_face[f] != 0) continue;
     const uint32_t* corner = &indices[faces[f].first];
@@ -192,7 +190,7 @@ std::vector<uint8_t> find_degenerate_faces(std::span<const uint32_t> indices, st
       if (concerned[b] == 0) continue;
       const auto wanted = pair_of(a, b);
       auto at = std::lower_bound(thin.begin(), thin.end(), wanted,
-                                 [](const Thin& t, const PointPair& points) { return t.points < points; });
+                                 [](const ThinFace& t, const PointPair& points) { return t.points < points; });
       if (at != thin.end() && !(wanted < at->points)) has_edge[static_cast<size_t>(at - thin.begin())] = 1;
     }
   }

@@ -148,8 +148,8 @@ Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
   return is_plain || is_small ? Coding::adaptive : Coding::either;
 }
 
-// How many points are within a step of where the part says that they repeat.
-uint64_t count_repeated(const Topology& points, std::span<const Position> positions) {
+// How many points are, within so many steps, where parts repeat.
+uint64_t count_repeated(const Topology& points, std::span<const Position> positions, int steps) {
   PositionParts parts(points);
   uint64_t n_repeated = 0;
   for (uint32_t v = 1; v < points.n_vertices; ++v) {
@@ -159,7 +159,7 @@ uint64_t count_repeated(const Topology& points, std::span<const Position> positi
     bool repeated = true;
     for (size_t axis = 0; axis < 3; ++axis) {
       const int expected = positions[anchor][axis] + positions[v - lag][axis] - positions[anchor - lag][axis];
-      repeated &= std::abs(positions[v][axis] - expected) <= 1;
+      repeated &= std::abs(positions[v][axis] - expected) <= steps;
     }
     n_repeated += repeated ? 1 : 0;
   }
@@ -171,9 +171,9 @@ uint64_t count_repeated(const Topology& points, std::span<const Position> positi
 void find_copies(Walked& walked) {
   if (PositionParts(walked.points).count() < 3) return;
   const std::vector<Position> positions = positions_of(walked);
-  const uint64_t by_order = count_repeated(walked.points, positions);
+  const uint64_t by_order = count_repeated(walked.points, positions, 1);
   walked.points.parts_repeat_by_size = true;
-  const uint64_t by_size = count_repeated(walked.points, positions);
+  const uint64_t by_size = count_repeated(walked.points, positions, 1);
   walked.points.parts_repeat_by_size = 8 * by_size > walked.points.n_vertices && 8 * by_size > 9 * by_order;
 }
 
@@ -182,17 +182,7 @@ void find_copies(Walked& walked) {
 bool repeats(const Walked& walked) {
   if (walked.points.parts_repeat_by_size) return true;
   const std::vector<Position> positions = positions_of(walked);
-  PositionParts parts(walked.points);
-  uint64_t n_repeated = 0;
-  for (uint32_t v = 1; v < walked.points.n_vertices; ++v) {
-    const uint32_t lag = parts.lag(v);
-    if (lag == 0 || lag >= v) continue;
-    bool repeated = true;
-    for (size_t axis = 0; axis < 3; ++axis)
-      repeated &=
-          positions[v][axis] - positions[v - 1][axis] == positions[v - lag][axis] - positions[v - lag - 1][axis];
-    n_repeated += repeated ? 1 : 0;
-  }
+  const uint64_t n_repeated = count_repeated(walked.points, positions, 0);
   return 8 * n_repeated > walked.points.n_vertices || find_period(positions) != 0;
 }
 
