@@ -106,6 +106,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
     out.resize(before);
     const bool starts_group = type == PictureType::I || !in_sequence || is_new_group;
     is_new_group = starts_group;
+    if (!in_sequence && type == PictureType::I) flatten_intra_matrix();
     if (starts_group) start_group(out);
     if (starts_group) look_ahead(frame, picture);
     header_bytes = out.size() - before;

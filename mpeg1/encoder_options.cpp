@@ -11,6 +11,14 @@ namespace {
 constexpr int kRowsPerBand = 8;
 constexpr double kFastIntraRounding = 0.375;  // of a step: the trellis rounds to nearest and decides itself
 
+// Nearer to flat: 24 * (entry / 24)^(1/4) of the default one. P pictures repeat errors of all frequencies alike. Its 64
+// bytes in each sequence header are little from so many macroblocks on (320x240).
+constexpr size_t kLeastForFlatter = 300;
+constexpr QuantizerMatrix kFlatterIntraMatrix = {8,  22, 23, 23, 24, 25, 25, 26, 22, 22, 23, 24, 25, 25, 26, 27,
+                                                 23, 23, 24, 25, 25, 26, 26, 27, 23, 23, 24, 25, 25, 26, 27, 27,
+                                                 23, 24, 25, 25, 26, 26, 27, 29, 24, 25, 25, 26, 26, 27, 29, 30,
+                                                 24, 25, 25, 26, 27, 28, 30, 31, 25, 25, 26, 27, 28, 30, 31, 33};
+
 bool is_valid(const std::optional<QuantizerMatrix>& matrix) {
   if (!matrix) return true;
   return std::all_of(matrix->begin(), matrix->end(), [](uint8_t entry) { return entry >= kMinMatrixEntry; });
@@ -88,6 +96,13 @@ void Encoder::State::set_matrices(const QuantizerMatrix& intra_matrix, const Qua
   sequence.has_non_intra_matrix = options.non_intra_matrix.has_value() || non_intra_matrix != kDefaultNonIntraMatrix;
   make_quantizers(intra_matrix, options.effort == Effort::fast ? kFastIntraRounding : 0.5, intra);
   make_quantizers(non_intra_matrix, 0.0, non_intra);  // reconstruction lies half a step above the level
+}
+
+// For a sequence that begins with an I picture: what begins with a P picture has few intra macroblocks.
+void Encoder::State::flatten_intra_matrix() {
+  const bool is_default = !options.intra_matrix && sequence.intra_matrix == kDefaultIntraMatrix;
+  if (is_default && options.effort != Effort::fast && options.gop_length > 1 && macroblocks.size() >= kLeastForFlatter)
+    set_matrices(kFlatterIntraMatrix, sequence.non_intra_matrix);
 }
 
 // By the pictures since the last adaptation, which then count no more. A repeated sequence header may bring other

@@ -45,6 +45,7 @@ struct Encoder::State {
   void look_ahead(const Frame420& frame, const PictureOptions& picture);
   void set_rate();
   void set_matrices(const QuantizerMatrix& intra_matrix, const QuantizerMatrix& non_intra_matrix);
+  void flatten_intra_matrix();
   void adapt_matrices();
   PictureTask make_task(PictureType type, const PictureOptions& picture);
   void code_picture(const PictureTask& task);

@@ -91,7 +91,8 @@ struct SequenceOptions {
   int threads = 1;            // 0: all processors; the bytes never depend on it
   bool scene_cuts = false;    // an I picture instead of a P picture where the scene changes
   bool intra_refresh = true;  // each macroblock intra at least once in 132 predicted codings [2.4.4.2]
-  std::optional<QuantizerMatrix> intra_matrix, non_intra_matrix;  // absent: default
+  // Absent: the default ones; from 320x240 on, efforts normal and best send an intra matrix that is nearer to flat.
+  std::optional<QuantizerMatrix> intra_matrix, non_intra_matrix;
   // Later groups begin with matrices that suit the coefficients of the groups before. Not at Effort::fast, and not for
   // players that read the first sequence header only, as jsmpeg does.
   bool adapt_matrices = false;
