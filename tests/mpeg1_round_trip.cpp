@@ -92,6 +92,45 @@ TEST_CASE("a quantizer_scale below 1 gives more quality than 1, down to its limi
   CHECK(!mpeg1::Encoder::create(too_fine).ok());
 }
 
+TEST_CASE("efforts above fast send an intra matrix nearer to flat, unless the caller has one or pictures are small") {
+  const auto sent = [](Effort effort, int width, bool has_own) {
+    mpeg1::SequenceOptions options;
+    options.width = width;
+    options.height = 240;
+    options.effort = effort;
+    if (has_own) options.intra_matrix = mpeg1::kDefaultIntraMatrix;
+    mpeg1::Decoder decoder;
+    decoder.feed(encode_clip(clip(width, 240, 1), options));
+    REQUIRE(decoder.next().ok());
+    REQUIRE(decoder.sequence() != nullptr);
+    return decoder.sequence()->intra_matrix;
+  };
+  for (const Effort effort : {Effort::normal, Effort::best}) {
+    const mpeg1::QuantizerMatrix matrix = sent(effort, 320, false);
+    CHECK(matrix[0] == 8);
+    CHECK(matrix[1] > mpeg1::kDefaultIntraMatrix[1]);
+    CHECK(matrix[63] < mpeg1::kDefaultIntraMatrix[63]);
+    CHECK(sent(effort, 320, true) == mpeg1::kDefaultIntraMatrix);
+    CHECK(sent(effort, 160, false) == mpeg1::kDefaultIntraMatrix);
+  }
+  CHECK(sent(Effort::fast, 320, false) == mpeg1::kDefaultIntraMatrix);
+}
+
+TEST_CASE("an intra matrix nearer to flat comes back as it was coded, on every instruction set") {
+  const std::vector<Frame420> frames = clip(320, 240, 4);
+  for (const Effort effort : {Effort::normal, Effort::best}) {
+    mpeg1::SequenceOptions options;
+    options.width = 320;
+    options.height = 240;
+    options.effort = effort;
+    require_round_trip(frames, options, 36);
+    const std::vector<uint8_t> expected = encode_clip(frames, options, Isa::scalar);
+    for (int i = 0; i < kIsaCount; ++i)
+      if (kernels_for(static_cast<Isa>(i)) != nullptr)
+        CHECK(encode_clip(frames, options, static_cast<Isa>(i)) == expected);
+  }
+}
+
 TEST_CASE("matrices that adapt to the groups before reach the decoder with the next sequence header") {
   const std::vector<Frame420> frames = clip(176, 144, 24);
   for (const Effort effort : {Effort::normal, Effort::best})
