@@ -12,6 +12,7 @@ namespace {
 // Of luma, from which on a macroblock may be better off without a prediction: 2 a sample. An error worth that,
 // 16 a sample squared and more, hardly hides in less.
 constexpr uint32_t kLeastIntraSad = 512;
+constexpr uint32_t kStillBonusBits = kBitsMotion - kBitsSkipped + 2;  // macroblocks skipped in a row share an address
 constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pattern longer, about
 
 }  // namespace
@@ -81,7 +82,7 @@ MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
   FastSearchOptions options;
   options.good_sad = 32 * q;
   options.still_sad = still_sad;
-  options.still_bonus = (kBitsMotion - kBitsSkipped) * q;
+  options.still_bonus = kStillBonusBits * q;
   // Where the neighbors agree they are believed, but for some macroblocks that look for themselves.
   options.believes_neighbors = ((column_ ^ row_) & 3) != 0;
   const SearchResult found = search_fast(search_input(candidates, n), options);
@@ -111,8 +112,8 @@ FastCoder::Outcome FastCoder::code_errors() {
 
 void FastCoder::start_blocks() {
   coded_.n_flat = coded_.n_full = 0;
-  coded_.n_tokens = coded_.bits = 0;
-  coded_.gain = 0;
+  coded_.n_tokens = 0;
+  coded_.saved = 0;
   coded_.pattern = 0;
   std::memset(coded_.counts, 0, sizeof coded_.counts);
 }
@@ -149,65 +150,61 @@ FastCoder::Outcome FastCoder::code_intra(int column, int row) {
 // beginning. False: a level has no code. An intra block's first coefficient is none of its business.
 template <bool kIsIntra>
 bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero) {
-  const int16_t* dct = dct_ + 64 * block;
+  const int16_t* const dct = dct_ + 64 * block;
   const QuantizerSet& set = kIsIntra ? *task_.residual.intra : *task_.residual.non_intra;
-  const uint16_t* weight = set.weight[quantizer()];
+  const uint16_t* const weight = set.weight[quantizer()];
   const int64_t bit = lambda();
-  Token* tokens = coded_.tokens + coded_.n_tokens;
-  int16_t* coefficients = coded_.coefficients + 64 * coded_.n_full;
+  Token* const tokens = coded_.tokens + coded_.n_tokens;
+  int16_t* const coefficients = coded_.coefficients + 64 * coded_.n_full;
   clear_block(coefficients);
-  struct Prefix {
-    int count = 0, bits = kIsIntra ? 0 : kEndOfBlock.length + kPatternBits, last = kIsIntra ? 0 : -1;
-    int64_t saved = 0;  // distortion that the levels take away, less what the bits are worth
-  } all, best;
-  all.saved = -bit * all.bits;
-  uint64_t kept = 0;
-  for (; nonzero != 0; nonzero &= nonzero - 1) {
-    const int position = std::countr_zero(nonzero), natural = kNaturalFromZigzag[position];
+  // saved: distortion that the levels take away, less what the bits are worth.
+  Token *end = tokens, *best_end = tokens;
+  int last = kIsIntra ? 0 : -1, best_last = last;
+  int64_t saved = kIsIntra ? 0 : -bit * (kEndOfBlock.length + kPatternBits), best_saved = 0;
+  for (uint64_t left = nonzero; left != 0; left &= left - 1) {
+    const int position = std::countr_zero(left), natural = kNaturalFromZigzag[position];
     const int level = levels[position], sign = level >> 31, magnitude = (level ^ sign) - sign;
     if (magnitude > kMaxLevel) return false;
     const int value =
         kIsIntra ? reconstruct_intra(magnitude, weight[position]) : reconstruct_non_intra(magnitude, weight[position]);
-    if (value == 0) continue;  // decoders disagree about it
-    const int c = std::abs(int{dct[natural]});
-    const int gain = 8 * value * (2 * c - 8 * value);                    // c^2 - (c - 8 value)^2
-    const bool is_short = !kIsIntra && position == 0 && magnitude == 1;  // dct_coeff_first
-    const Token token = is_short ? first_one_code(level) : coefficient_code(position - all.last - 1, level);
-    const auto bits = static_cast<int>(token & 31);
-    const int64_t saved = gain - bit * bits;
-    if (magnitude == 1 && saved <= 0) continue;
-    all.saved += saved;
-    all.bits += bits;
-    tokens[all.count++] = token;
+    if (value == 0) continue;                                                 // decoders disagree about it
+    const int gain = 16 * value * (std::abs(int{dct[natural]}) - 4 * value);  // c^2 - (c - 8 value)^2
+    const bool is_short = !kIsIntra && position == 0 && magnitude == 1;       // dct_coeff_first
+    const Token token = is_short ? first_one_code(level) : coefficient_code(position - last - 1, level);
+    const int64_t more = gain - bit * static_cast<int64_t>(token & 31);
+    if ((magnitude == 1) & (more <= 0)) continue;
+    saved += more;
+    *end++ = token;
     coefficients[natural] = static_cast<int16_t>((value ^ sign) - sign);
-    all.last = position;
-    kept |= uint64_t{1} << position;
-    if (all.saved > best.saved) best = all;
+    last = position;
+    if (saved > best_saved) best_saved = saved, best_end = end, best_last = position;
   }
-  if (!kIsIntra && best.count == 0) return true;
-  for (uint64_t left = kept & ~uint64_t{1} << best.last; left != 0; left &= left - 1)
-    coefficients[kNaturalFromZigzag[std::countr_zero(left)]] = 0;
-  tokens[best.count] = kEndOfBlockCode;
-  if (!kIsIntra && best.last == 0) {
+  if (!kIsIntra && best_end == tokens) return true;
+  if (best_last != last)
+    for (uint64_t left = nonzero & ~uint64_t{1} << best_last; left != 0; left &= left - 1)
+      coefficients[kNaturalFromZigzag[std::countr_zero(left)]] = 0;
+  *best_end++ = kEndOfBlockCode;
+  if (!kIsIntra && best_last == 0) {
     coded_.flat[coded_.n_flat] = coefficients[0];
     coded_.flat_blocks[coded_.n_flat++] = static_cast<uint8_t>(block);
   } else {
     coded_.full_blocks[coded_.n_full++] = static_cast<uint8_t>(block);
   }
-  coded_.n_tokens += best.count + 1;
-  coded_.counts[block] = static_cast<uint8_t>(best.count + 1);
-  coded_.bits += best.bits - kPatternBits;
-  coded_.gain += best.saved + bit * best.bits;
+  const auto count = static_cast<int>(best_end - tokens);
+  coded_.n_tokens += count;
+  coded_.counts[block] = static_cast<uint8_t>(count);
+  coded_.saved += best_saved;
   coded_.pattern = static_cast<uint8_t>(coded_.pattern | 32 >> block);
   return true;
 }
 
-// Against the same vector without coefficients.
+// Against the same vector without coefficients. The blocks have paid for their bits, and for kPatternBits each.
 bool FastCoder::is_worth_coding() const {
   const bool moves = vector_ != MotionVector{};
-  const int with = coded_.bits + kPatternCodes[coded_.pattern].length + (moves ? kBitsMotionCoded : kBitsCoded);
+  const int with = kPatternCodes[coded_.pattern].length - kPatternBits * std::popcount(coded_.pattern) +
+                   (moves ? kBitsMotionCoded : kBitsCoded);
   const int without = moves || !may_skip() ? kBitsMotion : kBitsSkipped;
-  return coded_.gain > lambda() * (with - without);
+  return coded_.saved > lambda() * (with - without);
 }
 
 uint8_t* FastCoder::samples_of(int block) const {

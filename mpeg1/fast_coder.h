@@ -40,8 +40,8 @@ class FastCoder : private MacroblockPlace {
   MotionVector vector_;
   // Of the blocks with levels, in the order of the stream.
   struct Coded {
-    int n_tokens = 0, bits = 0;
-    int64_t gain = 0;  // distortion that the levels take away
+    int n_tokens = 0;
+    int64_t saved = 0;  // distortion that the levels take away, less what their bits are worth
     uint8_t pattern = 0;
     uint8_t counts[kBlocks] = {};
     Token tokens[65 * kBlocks];

@@ -22,9 +22,12 @@ class FastSearch {
     start_still();
     try_candidates();
     if (best_.sad < options_.good_sad) return best_;
-    if (best_.sad > kPoorSad) walk(8);
-    const bool moved = walk(2);
-    if (options_.believes_neighbors && !moved && is_of_neighbors()) return best_;
+    const bool is_poor = best_.sad > kPoorSad;
+    if (is_poor) walk(8);
+    // Neighbors that agree on a half sample are near the motion: a smaller step from it finds more than a larger one.
+    const bool is_near = options_.believes_neighbors && !is_poor && is_half(best_.vector) && is_of_neighbors();
+    const bool moved = walk(is_near ? 1 : 2);
+    if (is_near || (options_.believes_neighbors && !moved && is_of_neighbors())) return best_;
     refine();
     return best_;
   }
@@ -66,11 +69,12 @@ class FastSearch {
       try_vector(v.x_halfpel, v.y_halfpel);
     }
   }
+  static bool is_half(MotionVector v) { return ((v.x_halfpel | v.y_halfpel) & 1) != 0; }
   bool is_of_neighbors() const {
     return std::count(in_.candidates, in_.candidates + in_.n_candidates, best_.vector) >= kEnoughNeighbors;
   }
 
-  // Downhill in a diamond of that radius (half samples, even), without looking back to where it came from.
+  // Downhill in a diamond of that radius (half samples), without looking back to where it came from.
   bool walk(int radius) {
     static constexpr int kDx[4] = {1, 0, -1, 0}, kDy[4] = {0, 1, 0, -1};
     int came_from = -1;
