@@ -172,7 +172,7 @@ bool FastCoder::choose_levels(int block, const int16_t* levels, uint64_t nonzero
     const bool is_short = !kIsIntra && position == 0 && magnitude == 1;       // dct_coeff_first
     const Token token = is_short ? first_one_code(level) : coefficient_code(position - last - 1, level);
     const int64_t more = gain - bit * static_cast<int64_t>(token & 31);
-    if ((magnitude == 1) & (more <= 0)) continue;
+    if (magnitude == 1 && more <= 0) continue;
     saved += more;
     *end++ = token;
     coefficients[natural] = static_cast<int16_t>((value ^ sign) - sign);

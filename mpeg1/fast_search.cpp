@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kMaxSteps = 24, kMaxTried = 16;
 constexpr uint32_t kPoorSad = 2000;  // 8 a sample: from which on the search looks further
+constexpr int kDx[4] = {1, 0, -1, 0}, kDy[4] = {0, 1, 0, -1};
 constexpr int kEnoughNeighbors = 2;  // that have the vector
 
 class FastSearch {
@@ -45,11 +46,14 @@ class FastSearch {
     best_.cost = cost - std::min(cost, options_.still_bonus);
   }
 
+  const uint8_t* reference_at(int x, int y) const { return still_ + (y >> 1) * stride_ + (x >> 1); }
+
   // A vector inside the range. True where it is the best so far.
   bool try_vector(int x, int y) {
-    const uint8_t* reference = still_ + (y >> 1) * stride_ + (x >> 1);
-    const uint32_t sad =
-        in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)](in_.source, in_.source_stride, reference, stride_);
+    const auto sad16 = in_.kernels->sad16_half[(x & 1) + 2 * (y & 1)];
+    return weigh(x, y, sad16(in_.source, in_.source_stride, reference_at(x, y), stride_));
+  }
+  bool weigh(int x, int y, uint32_t sad) {
     const uint32_t cost = sad + bits_cost(x, y);
     if (cost >= best_.cost) return false;
     best_.vector = {static_cast<int16_t>(x), static_cast<int16_t>(y)};
@@ -76,19 +80,37 @@ class FastSearch {
 
   // Downhill in a diamond of that radius (half samples), without looking back to where it came from.
   bool walk(int radius) {
-    static constexpr int kDx[4] = {1, 0, -1, 0}, kDy[4] = {0, 1, 0, -1};
     int came_from = -1;
     for (int step = 0; step < kMaxSteps; ++step) {
-      const MotionVector center = best_.vector;
-      int moved = -1;
-      for (int direction = 0; direction < 4; ++direction) {
-        const int x = center.x_halfpel + radius * kDx[direction], y = center.y_halfpel + radius * kDy[direction];
-        if (direction != came_from && in_.range.contains(x, y) && try_vector(x, y)) moved = direction;
-      }
+      const int moved = step == 0 && radius % 2 == 0 && !is_half(best_.vector) ? look_around(best_.vector, radius)
+                                                                               : look(best_.vector, radius, came_from);
       if (moved < 0) return step > 0;
       came_from = moved ^ 2;
     }
     return true;
+  }
+  // Which of the four directions, but for one, is the best so far; -1: none.
+  int look(MotionVector center, int radius, int came_from) {
+    int moved = -1;
+    for (int direction = 0; direction < 4; ++direction) {
+      const int x = center.x_halfpel + radius * kDx[direction], y = center.y_halfpel + radius * kDy[direction];
+      if (direction != came_from && in_.range.contains(x, y) && try_vector(x, y)) moved = direction;
+    }
+    return moved;
+  }
+  // All four at once, of whole samples.
+  int look_around(MotionVector center, int radius) {
+    const int x = center.x_halfpel, y = center.y_halfpel;
+    if (!in_.range.contains(x - radius, y - radius) || !in_.range.contains(x + radius, y + radius))
+      return look(center, radius, -1);
+    const uint8_t* references[4];
+    for (int i = 0; i < 4; ++i) references[i] = reference_at(x + radius * kDx[i], y + radius * kDy[i]);
+    uint32_t sads[4];
+    in_.kernels->sad16_x4(in_.source, in_.source_stride, references, stride_, sads);
+    int moved = -1;
+    for (int i = 0; i < 4; ++i)
+      if (weigh(x + radius * kDx[i], y + radius * kDy[i], sads[i])) moved = i;
+    return moved;
   }
 
   void refine() {
