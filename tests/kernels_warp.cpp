@@ -318,26 +318,35 @@ TEST_CASE("points of one height, of a few and of many are filtered alike on ever
 
 TEST_CASE("what is shown is equal on every instruction set, for every difference") {
   const WarpKernels& scalar = kernels_for(Isa::scalar)->warp;
+  constexpr int kLargest = 255 << kCarriedBits;
   uint32_t state = 29;
   for (const Isa isa : {Isa::sse41, Isa::avx2, Isa::neon}) {
     if (kernels_for(isa) == nullptr) continue;
     for (size_t n = 0; n < 600; ++n) {
       std::vector<uint8_t> low(3 * n);
-      std::vector<int16_t> d(n), u(n), v(n), carried(n);
+      std::vector<int16_t> d(n), u(n), v(n), carried(n), near(n + 33), far(n + 33);
       for (uint8_t& sample : low) sample = static_cast<uint8_t>(next_random(state));
       for (size_t i = 0; i < n; ++i) {
-        d[i] = static_cast<int16_t>(static_cast<int>(next_random(state) % 511) - 255);
-        carried[i] = static_cast<int16_t>(128 * d[i] - static_cast<int>(i % 64));
+        d[i] = static_cast<int16_t>(static_cast<int>(next_random(state) % (2 * kLargest + 1)) - kLargest);
+        carried[i] = static_cast<int16_t>(4 * d[i] - static_cast<int>(i % 64));
         u[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? i % 511 : next_random(state) % 511) - 255);
         v[i] = static_cast<int16_t>(static_cast<int>(n == 511 ? 510 - i : next_random(state) % 511) - 255);
       }
+      for (std::vector<int16_t>* row : {&near, &far})
+        for (int16_t& sample : *row) {
+          const auto any = static_cast<int>(next_random(state) % (2 * kLargest + 1)) - kLargest;
+          sample = static_cast<int16_t>(n % 8 == 7 ? (any < 0 ? -kLargest : kLargest) : any);
+        }
+      std::vector<int16_t> twice[2] = {std::vector<int16_t>(2 * n + 1, 9), std::vector<int16_t>(2 * n + 1, 9)};
       std::vector<uint8_t> rgb[2] = {std::vector<uint8_t>(3 * n + 1, 9), std::vector<uint8_t>(3 * n + 1, 9)};
       std::vector<uint8_t> sum[2] = {std::vector<uint8_t>(n + 1, 9), std::vector<uint8_t>(n + 1, 9)};
       const WarpKernels* tables[] = {&scalar, &kernels_for(isa)->warp};
       for (int side = 0; side < 2; ++side) {
+        if (n > 0) tables[side]->upsample_carried_row(near.data() + 1, far.data() + 1, n, twice[side].data());
         tables[side]->composite_signed_row(low.data(), d.data(), u.data(), v.data(), n, rgb[side].data());
         tables[side]->add_carried_row(low.data(), carried.data(), n, sum[side].data());
       }
+      REQUIRE(twice[0] == twice[1]);
       REQUIRE(rgb[0] == rgb[1]);
       REQUIRE(sum[0] == sum[1]);
     }

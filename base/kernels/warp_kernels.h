@@ -111,10 +111,18 @@ struct WarpKernels {
   // out[i] = min(max(base[i] + ((carried[i] + 16) >> 5), 0), 255), carried in -32700..32700. Any n and alignment.
   void (*add_carried_row)(const uint8_t* base, const int16_t* carried, size_t n, uint8_t* out);
 
-  // n pixels of a picture and of a difference, luma d and chroma u and v in -255..255, to what is shown, interleaved:
+  // n samples of a row of chroma at twice their resolution, 2 n of them, by weights 3/4 and 1/4 in each direction, from
+  // carried differences of its nearer and its farther row, in +-255 * 2^kCarriedBits, to whole ones. With two bits kept
+  // below the point, c[x] = 3 * ((near[x] + 4) >> 3) + ((far[x] + 4) >> 3),
+  //   out[2 x] = (3 c[x] + c[x - 1] + 32) >> 6,  out[2 x + 1] = (3 c[x] + c[x + 1] + 32) >> 6     n >= 1
+  // Reads samples -1..n + 31 of both rows; what lies behind sample n does not count.
+  void (*upsample_carried_row)(const int16_t* near, const int16_t* far, size_t n, int16_t* out);
+
+  // n pixels of a picture and of a difference, luma d = (carried + 16) >> 5 of carried ones in +-255 * 2^kCarriedBits,
+  // chroma u and v in -255..255, to what is shown, interleaved:
   //   r = clamp(low_r + d + ((91881 v + 32768) >> 16)),  g = clamp(low_g + d + ((-22554 u - 46802 v + 32768) >> 16)),
   //   b = clamp(low_b + d + ((116130 u + 32768) >> 16))     to 0..255. Any n and alignment; rgb may be low.
-  void (*composite_signed_row)(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+  void (*composite_signed_row)(const uint8_t* low, const int16_t* carried, const int16_t* u, const int16_t* v, size_t n,
                                uint8_t* rgb);
 };
 

@@ -124,10 +124,10 @@ inline int16x8_t rounded_sum(int16x8_t x, int16_t a, int16x8_t y, int16_t b) {
 }
 
 // 91881 = 65536 + 26345, 116130 = 131072 - 14942 and -46802 = -65536 + 18734.
-inline void composite_eight(const uint8_t* low, const int16_t* difference, const int16_t* chroma_u,
+inline void composite_eight(const uint8_t* low, const int16_t* carried, const int16_t* chroma_u,
                             const int16_t* chroma_v, uint8_t* rgb) {
   const uint8x8x3_t from = vld3_u8(low);
-  const int16x8_t d = vld1q_s16(difference), u = vld1q_s16(chroma_u), v = vld1q_s16(chroma_v);
+  const int16x8_t d = vrshrq_n_s16(vld1q_s16(carried), kCarriedBits), u = vld1q_s16(chroma_u), v = vld1q_s16(chroma_v);
   const int16x8_t red = vaddq_s16(vaddq_s16(d, v), rounded_sum(v, 26345, u, 0));
   const int16x8_t green = vaddq_s16(vsubq_s16(d, v), rounded_sum(u, -22554, v, 18734));
   const int16x8_t blue = vaddq_s16(vaddq_s16(d, vaddq_s16(u, u)), rounded_sum(u, -14942, v, 0));

@@ -227,13 +227,38 @@ void add_carried_row(const uint8_t* base, const int16_t* carried, size_t n, uint
   for (size_t i = 0; i < n; ++i) out[i] = to_byte(base[i] + ((carried[i] + (1 << (kCarriedBits - 1))) >> kCarriedBits));
 }
 
-void composite_signed_row(const uint8_t* low, const int16_t* d, const int16_t* u, const int16_t* v, size_t n,
+// 16 bits hold every sum.
+template <int kBits>
+int16_t rounded(int value) {
+  return static_cast<int16_t>(static_cast<int16_t>(value + (1 << (kBits - 1))) >> kBits);
+}
+
+void upsample_carried_row(const int16_t* near, const int16_t* far, size_t n, int16_t* out) {
+  constexpr size_t kBlock = 256;
+  constexpr int kKept = 2;  // bits below the point
+  for (size_t first = 0; first < n; first += kBlock) {
+    const size_t block = n - first < kBlock ? n - first : kBlock;
+    int16_t column[kBlock + 2];
+    const int16_t *a = near + first - 1, *b = far + first - 1;
+    for (size_t x = 0; x < block + 2; ++x)
+      column[x] = static_cast<int16_t>(3 * rounded<kCarriedBits - kKept>(a[x]) + rounded<kCarriedBits - kKept>(b[x]));
+    int16_t* to = out + 2 * first;
+    for (size_t x = 0; x < block; ++x) {
+      const int here = 3 * column[x + 1];
+      to[2 * x] = rounded<4 + kKept>(here + column[x]);
+      to[2 * x + 1] = rounded<4 + kKept>(here + column[x + 2]);
+    }
+  }
+}
+
+void composite_signed_row(const uint8_t* low, const int16_t* carried, const int16_t* u, const int16_t* v, size_t n,
                           uint8_t* rgb) {
   constexpr int kHalf = 1 << 15;
   for (size_t i = 0; i < n; ++i) {
-    rgb[3 * i] = to_byte(low[3 * i] + d[i] + ((91881 * v[i] + kHalf) >> 16));
-    rgb[3 * i + 1] = to_byte(low[3 * i + 1] + d[i] + ((-22554 * u[i] - 46802 * v[i] + kHalf) >> 16));
-    rgb[3 * i + 2] = to_byte(low[3 * i + 2] + d[i] + ((116130 * u[i] + kHalf) >> 16));
+    const int d = rounded<kCarriedBits>(carried[i]);
+    rgb[3 * i] = to_byte(low[3 * i] + d + ((91881 * v[i] + kHalf) >> 16));
+    rgb[3 * i + 1] = to_byte(low[3 * i + 1] + d + ((-22554 * u[i] - 46802 * v[i] + kHalf) >> 16));
+    rgb[3 * i + 2] = to_byte(low[3 * i + 2] + d + ((116130 * u[i] + kHalf) >> 16));
   }
 }
 
@@ -251,6 +276,7 @@ void fill_warp_scalar(WarpKernels& table) {
   table.filter_edges = filter_edges;
   table.mean_edges = mean_edges;
   table.add_carried_row = add_carried_row;
+  table.upsample_carried_row = upsample_carried_row;
   table.composite_signed_row = composite_signed_row;
 }
 

@@ -153,7 +153,7 @@ inline __m128i rounded_sum(__m128i x, int a, __m128i y, int b) {
 
 // Eight pixels, 24 bytes. 91881 = 65536 + 26345, 116130 = 131072 - 14942 and -46802 = -65536 + 18734: whole numbers of
 // v and u stay outside of the products.
-inline void composite_eight(const uint8_t* low, const int16_t* difference, const int16_t* chroma_u,
+inline void composite_eight(const uint8_t* low, const int16_t* carried, const int16_t* chroma_u,
                             const int16_t* chroma_v, uint8_t* rgb) {
   const __m128i first = _mm_loadu_si128(reinterpret_cast<const __m128i*>(low));
   const __m128i last = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(low + 16));
@@ -162,7 +162,7 @@ inline void composite_eight(const uint8_t* low, const int16_t* difference, const
     const __m128i sum = _mm_add_epi16(bytes, added);
     return _mm_packus_epi16(sum, sum);
   };
-  const __m128i d = load(difference), u = load(chroma_u), v = load(chroma_v);
+  const __m128i d = whole(load(carried)), u = load(chroma_u), v = load(chroma_v);
   const __m128i red = _mm_add_epi16(_mm_add_epi16(d, v), rounded_sum(v, 26345, u, 0));
   const __m128i green = _mm_add_epi16(_mm_sub_epi16(d, v), rounded_sum(u, -22554, v, 18734));
   const __m128i blue = _mm_add_epi16(_mm_add_epi16(d, _mm_add_epi16(u, u)), rounded_sum(u, -14942, v, 0));

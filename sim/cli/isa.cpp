@@ -113,6 +113,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(warp, filter_edges),
     PAC_KERNEL(warp, mean_edges),
     PAC_KERNEL(warp, add_carried_row),
+    PAC_KERNEL(warp, upsample_carried_row),
     PAC_KERNEL(warp, composite_signed_row),
 };
 
