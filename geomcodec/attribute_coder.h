@@ -48,12 +48,6 @@ struct ComponentModel {
   }
 };
 
-// The contexts of coding by tables: of the first component by basis and the neighbors' classes, of the others by the
-// largest class so far and the neighbors' classes; then of "the same as the sibling's".
-inline constexpr uint32_t kScaleHalves = 2 * kClasses + 1, kScales = kClasses + 1, kOtherClasses = 16;
-inline constexpr uint32_t kFirstContexts = 3 * kScaleHalves, kOtherContexts = kOtherClasses * kScales;
-inline constexpr uint32_t kSiblingContext = kFirstContexts + 3 * kOtherContexts;
-inline constexpr size_t kAttributeContexts = kSiblingContext + 2;
 static_assert(kAttributeContexts <= kMaxTableContexts);
 
 inline uint32_t table_context(uint32_t component, AttributeBasis basis, uint32_t scale, uint32_t other) {
@@ -120,9 +114,9 @@ Result<void> decode_attribute(AttributeCoder& attribute, Coder& coder, std::span
 // The same with a coder of its own, by tables or by adaptive models; `more` goes to the attribute's constructor.
 template <template <class> class AttributeCoder, class More>
 std::vector<uint8_t> encode_attribute(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, More more,
-                                      bool by_tables) {
-  if (by_tables) {
-    TableEncoder coder(kAttributeContexts);
+                                      AttributeCoding coding) {
+  if (coding.by_tables) {
+    TableEncoder coder(kAttributeContexts, coding.expected);
     AttributeCoder<TableEncoder> attribute(mesh, coder, more);
     return encode_attribute(attribute, coder, vertices);
   }
@@ -132,10 +126,10 @@ std::vector<uint8_t> encode_attribute(const AttributeMesh& mesh, std::span<const
 }
 template <template <class> class AttributeCoder, class More>
 Result<void> decode_attribute(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                              std::span<QuantizedVertex> vertices, More more, bool by_tables) {
-  if (by_tables) {
+                              std::span<QuantizedVertex> vertices, More more, AttributeCoding coding) {
+  if (coding.by_tables) {
     SymbolTables tables;
-    TableDecoder coder(bytes, kAttributeContexts, tables);
+    TableDecoder coder(bytes, kAttributeContexts, coding.expected, tables);
     AttributeCoder<TableDecoder> attribute(mesh, coder, more);
     return decode_attribute(attribute, coder, vertices);
   }

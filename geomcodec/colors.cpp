@@ -3,13 +3,13 @@
 namespace pac::geomcodec {
 
 std::vector<uint8_t> encode_colors(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, bool trained,
-                                   bool by_tables) {
-  return encode_attribute<ColorCoder>(mesh, vertices, trained, by_tables);
+                                   AttributeCoding coding) {
+  return encode_attribute<ColorCoder>(mesh, vertices, trained, coding);
 }
 
 Result<void> decode_colors(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                           std::span<QuantizedVertex> vertices, bool trained, bool by_tables) {
-  return decode_attribute<ColorCoder>(bytes, mesh, vertices, trained, by_tables);
+                           std::span<QuantizedVertex> vertices, bool trained, AttributeCoding coding) {
+  return decode_attribute<ColorCoder>(bytes, mesh, vertices, trained, coding);
 }
 
 }  // namespace pac::geomcodec

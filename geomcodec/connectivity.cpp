@@ -277,7 +277,8 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
   CodedConnectivity coded;
   if (adaptively) coded.adaptive_bytes = encode_walk(RangeEncoder(), header, source, coded.topology);
   if (adaptively && by_tables) source.restart();
-  if (by_tables) coded.table_bytes = encode_walk(TableEncoder(kWalkContexts), header, source, coded.topology);
+  if (by_tables)
+    coded.table_bytes = encode_walk(TableEncoder(kWalkContexts, Expected::nothing), header, source, coded.topology);
   coded.order = std::move(source.order);
   return coded;
 }
@@ -286,7 +287,7 @@ Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const Conne
                                      uint64_t stream_bytes) {
   if (by_tables) {
     SymbolTables tables;
-    TableDecoder coder(bytes, kWalkContexts, tables);
+    TableDecoder coder(bytes, kWalkContexts, Expected::nothing, tables);
     return decode_walk(coder, header, stream_bytes);
   }
   RangeDecoder coder(bytes);

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "base/result.h"
+#include "geomcodec/attributes.h"
 #include "geomcodec/geomcodec.h"
 
 namespace pac::geomcodec {
 
-inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithFeatures = 6;
+inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithFeatures = 6,
+                         kVersionOfExpectedTables = 7;
 
 enum Section : uint32_t {
   kConnectivity,
@@ -51,16 +53,26 @@ struct Header {
   bool chooses = false;               // positions, not coded by tables: a symbol tells what residuals start from
   bool ranked = false;                // positions, not coded by tables: in the order of point_order.h
   bool parts_repeat_by_size = false;  // positions, not coded by tables: as Topology::parts_repeat_by_size
+  bool expected_tables = false;       // in sections by tables but connectivity contexts have expected_tables.h's
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
   uint8_t version() const {
-    return n_degenerate > 0 || ranked || parts_repeat_by_size ? kVersionWithFeatures
-           : chooses                                          ? kVersionThatChooses
-           : tables != 0                                      ? kVersionWithTables
-                                                              : kVersion;
+    return expected_tables                                      ? kVersionOfExpectedTables
+           : n_degenerate > 0 || ranked || parts_repeat_by_size ? kVersionWithFeatures
+           : chooses                                            ? kVersionThatChooses
+           : tables != 0                                        ? kVersionWithTables
+                                                                : kVersion;
   }
   bool by_tables(Section section) const { return (tables >> section & 1) != 0; }
+  bool may_expect_tables() const {
+    return (tables & (1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords)) != 0;
+  }
+  // Of colors, normals, texture.
+  AttributeCoding coding_of(Section section) const {
+    const Expected expected = section == kColors ? Expected::colors : Expected::others;
+    return {by_tables(section), expected_tables ? expected : Expected::nothing};
+  }
   // Whether the fields above leave anything for a section to say.
   bool has(Section section) const;
 };

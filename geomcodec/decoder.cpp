@@ -98,10 +98,11 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
     const Topology topology = renumbered(points, rank);
     return adaptive(topology, Stencils(topology));
   };
-  auto positions = header.by_tables(kPositions) ? decode_positions_by_tables(stream.section[kPositions], stencils,
-                                                                             n_positions, header.position_bits)
-                   : header.ranked              ? decode_ranked()
-                                                : adaptive(points, stencils);
+  auto positions = header.by_tables(kPositions)
+                       ? decode_positions_by_tables(stream.section[kPositions], stencils, n_positions,
+                                                    header.position_bits, header.expected_tables)
+                   : header.ranked ? decode_ranked()
+                                   : adaptive(points, stencils);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
@@ -118,17 +119,17 @@ Result<void> decode_attributes(const ParsedStream& stream, const AttributeMesh& 
   const Header& header = stream.header;
   if (with_colors && header.has(kColors)) {
     const auto done =
-        decode_colors(stream.section[kColors], attributes, mesh.vertices, header.trained, header.by_tables(kColors));
+        decode_colors(stream.section[kColors], attributes, mesh.vertices, header.trained, header.coding_of(kColors));
     if (!done) return at(done.failure(), stream.section_offset(kColors));
   }
   if (header.has(kNormals)) {
     const auto done = decode_normals(stream.section[kNormals], attributes, mesh.vertices, header.normal_bits,
-                                     header.by_tables(kNormals));
+                                     header.coding_of(kNormals));
     if (!done) return at(done.failure(), stream.section_offset(kNormals));
   }
   if (header.has(kTexcoords)) {
     const auto done = decode_texcoords(stream.section[kTexcoords], attributes, mesh.vertices, header.texcoord_bits,
-                                       header.by_tables(kTexcoords));
+                                       header.coding_of(kTexcoords));
     if (!done) return at(done.failure(), stream.section_offset(kTexcoords));
   }
   return {};
@@ -150,7 +151,8 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
                               header.by_tables(kColors),
                               header.position_bits,
                               header.trained,
-                              header.chooses};
+                              header.chooses,
+                              header.expected_tables};
     const bool done = decode_positions_and_colors(coded, attributes, mesh.vertices, failure);
     if (!done) return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {

@@ -10,11 +10,13 @@
 #include "geomcodec/geomcodec.h"
 #include "geomcodec/materials.h"
 #include "geomcodec/mesh_check.h"
+#include "geomcodec/plain_estimate.h"
 #include "geomcodec/point_order.h"
 #include "geomcodec/position_coder.h"
 #include "geomcodec/position_weights.h"
 #include "geomcodec/positions.h"
 #include "geomcodec/seams.h"
+#include "geomcodec/table_choice.h"
 #include "geomcodec/table_positions.h"
 
 namespace pac::geomcodec {
@@ -109,7 +111,7 @@ bool has_constant_color(const QuantizedMesh& mesh) {
 Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOptions& options) {
   Header header;
   header.keeps_order = options.keep_order;
-  header.trained = options.trained_priors && !mesh.vertices.empty();
+  header.trained = header.expected_tables = options.trained_priors && !mesh.vertices.empty();
   header.constant_color = has_constant_color(mesh);
   header.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, header.origin);
@@ -136,16 +138,16 @@ Header header_of(const QuantizedMesh& mesh, const Walked& walked, const EncodeOp
 constexpr size_t kManyVertices = 16384;
 // Below so many vertices a decoder takes less than 0.2 ms however sections are coded; below so many bits a coordinate
 // a grid is chosen where bytes are scarce.
-constexpr size_t kFewVertices = 512;
+constexpr size_t kFewVertices = 512, kFewPlainVertices = 1024;
 constexpr int kFineBits = 13;
 
 Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
   if (mesh.faces.empty() || effort == Effort::best) return Coding::adaptive;
   if (effort == Effort::fast || mesh.vertices.size() >= kManyVertices) return Coding::tables;
-  // An encoder that makes both needs half as much time again, which positions alone are not worth.
+  // Making both takes time, which for positions alone has to be worth more.
   const bool is_plain = mesh.normal_bits == 0 && mesh.texcoord_bits == 0 && has_constant_color(mesh);
-  const bool is_small = mesh.vertices.size() < kFewVertices || mesh.position_bits < kFineBits;
-  return is_plain || is_small ? Coding::adaptive : Coding::either;
+  const size_t few = is_plain ? kFewPlainVertices : kFewVertices;
+  return mesh.vertices.size() < few || mesh.position_bits < kFineBits ? Coding::adaptive : Coding::either;
 }
 
 // How many points are, within so many steps, where parts repeat.
@@ -194,8 +196,6 @@ void choose_tables(const Walked& walked, Effort effort, Header& header) {
   header.trained = header.trained && !header.by_tables(kPositions);
 }
 
-using Sections = std::array<std::vector<uint8_t>, kSections>;
-
 // The sections of vertices that the header has, as it says they are coded; `by_tables`, if given, receives them coded
 // by tables as well.
 struct VertexSections {
@@ -204,20 +204,29 @@ struct VertexSections {
   Header& header;
   Sections& sections;
   Sections* by_tables;
+  struct Speed {
+    PlainBytes plain;
+    int64_t grown = 0;  // positions by tables, beyond the other coding
+  } & speed;
 };
 
 void encode_attributes(const AttributeMesh& mesh, const VertexSections& out) {
   const Header& header = out.header;
   const auto encode_section = [&](Section section, auto encode_as) {
     if (!header.has(section)) return;
-    out.sections[section] = encode_as(header.by_tables(section));
-    if (out.by_tables != nullptr) (*out.by_tables)[section] = encode_as(true);
+    AttributeCoding coding = header.coding_of(section);
+    out.sections[section] = encode_as(coding);
+    coding.by_tables = true;
+    if (out.by_tables != nullptr) (*out.by_tables)[section] = encode_as(coding);
   };
   const std::span<const QuantizedVertex> vertices = out.walked.vertices;
-  encode_section(kColors, [&](bool tables) { return encode_colors(mesh, vertices, header.trained, tables); });
-  encode_section(kNormals, [&](bool tables) { return encode_normals(mesh, vertices, header.normal_bits, tables); });
-  encode_section(kTexcoords,
-                 [&](bool tables) { return encode_texcoords(mesh, vertices, header.texcoord_bits, tables); });
+  encode_section(kColors,
+                 [&](AttributeCoding coding) { return encode_colors(mesh, vertices, header.trained, coding); });
+  encode_section(kNormals,
+                 [&](AttributeCoding coding) { return encode_normals(mesh, vertices, header.normal_bits, coding); });
+  encode_section(kTexcoords, [&](AttributeCoding coding) {
+    return encode_texcoords(mesh, vertices, header.texcoord_bits, coding);
+  });
 }
 
 // The mesh with its points in the other order.
@@ -278,6 +287,24 @@ void encode_positions_adaptively(const Stencils& stencils, std::span<const Posit
   take_positions(std::move(coded), false, out);
 }
 
+// Codes positions by tables unless those cannot be what speed asks for, and tells whether they are few enough without
+// knowing more than estimates of what the other coding takes; these are mostly a little low, and of no use where
+// positions repeat.
+bool tables_suffice(const Stencils& stencils, std::span<const Position> positions, const VertexSections& out) {
+  const int bits = out.header.position_bits;
+  if (repeats(out.walked)) return false;
+  PlainBytes& plain = out.speed.plain;
+  plain = PlainBytes(out.sections[kConnectivity].size(), estimate_plainly(stencils, positions));
+  if (plain.are_raw(out.header)) return false;
+  std::vector<uint8_t>& by_tables = (*out.by_tables)[kPositions];
+  by_tables = encode_positions_by_tables(stencils, positions, bits, out.header.expected_tables);
+  if (!plain.tables_may_suffice(by_tables.size())) return false;
+  const uint64_t adaptive_bytes = estimate_choosing(out.walked.points, stencils, positions, bits) * 33 / (8 * 32);
+  if (!plain.tables_suffice(by_tables.size(), adaptive_bytes)) return false;
+  out.speed.grown = static_cast<int64_t>(by_tables.size()) - static_cast<int64_t>(adaptive_bytes);
+  return true;
+}
+
 void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
   const Walked& walked = out.walked;
   Header& header = out.header;
@@ -285,7 +312,7 @@ void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
   const int bits = header.position_bits;
   std::vector<uint8_t>& section = out.sections[kPositions];
   if (header.by_tables(kPositions)) {
-    section = encode_positions_by_tables(stencils, positions, bits);
+    section = encode_positions_by_tables(stencils, positions, bits, header.expected_tables);
     if (out.options.effort == Effort::fast) return;
     const Ranked ranked(walked.points, stencils, positions);
     if (!choosing_pays(walked, stencils, positions, ranked, bits, out.options.trained_priors, section.size())) return;
@@ -294,8 +321,12 @@ void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
     return take_positions(
         encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, false), true, out);
   }
+  if (out.by_tables != nullptr && tables_suffice(stencils, positions, out)) {
+    section = std::move((*out.by_tables)[kPositions]);
+    header.tables = static_cast<uint8_t>(header.tables | 1u << kPositions);
+    return;
+  }
   encode_positions_adaptively(stencils, positions, out);
-  if (out.by_tables != nullptr) (*out.by_tables)[kPositions] = encode_positions_by_tables(stencils, positions, bits);
 }
 
 // Positions over points, all else over vertices; without seams these are the same mesh.
@@ -314,46 +345,6 @@ void encode_vertices(const VertexSections& out) {
   encode_attributes({topology, stencils, walked.seams.sibling}, out);
 }
 
-// Of the sections that may be either, those by tables that save a decoder most time while the stream's sections grow by
-// a sixteenth at most; none where these are so few bytes that a table's own would show.
-void keep_fastest(Header& header, Sections& sections, Sections& by_tables) {
-  struct Candidate {
-    Section section;
-    int64_t growth;      // bytes
-    int64_t saved_time;  // about so many ns
-  };
-  const int64_t n_vertices = header.n_vertices(), n_points = header.n_points(), n_faces = header.n_faces;
-  std::vector<Candidate> candidates;
-  int64_t room = 0, most_saved = 0;
-  for (const auto& [section, saved_time] :
-       {std::pair{kConnectivity, 20 * n_faces}, std::pair{kPositions, 90 * n_points},
-        std::pair{kColors, 40 * n_vertices}, std::pair{kNormals, 25 * n_vertices},
-        std::pair{kTexcoords, 35 * n_vertices}}) {
-    if (!header.has(section)) continue;
-    const auto bytes = static_cast<int64_t>(sections[section].size());
-    room += bytes;
-    candidates.push_back({section, static_cast<int64_t>(by_tables[section].size()) - bytes, saved_time});
-  }
-  if (room < 1024) return;
-  room /= 16;
-  for (uint32_t subset = 1; subset < 1u << candidates.size(); ++subset) {
-    int64_t growth = 0, saved_time = 0;
-    uint8_t tables = 0;
-    for (size_t i = 0; i < candidates.size(); ++i) {
-      if ((subset >> i & 1) == 0) continue;
-      growth += candidates[i].growth;
-      saved_time += candidates[i].saved_time;
-      tables = static_cast<uint8_t>(tables | 1u << candidates[i].section);
-    }
-    if (growth > room || saved_time <= most_saved) continue;
-    most_saved = saved_time;
-    header.tables = tables;
-  }
-  for (const Candidate& candidate : candidates)
-    if (header.by_tables(candidate.section)) sections[candidate.section] = std::move(by_tables[candidate.section]);
-  if (header.by_tables(kPositions)) header.chooses = header.ranked = header.parts_repeat_by_size = false;
-}
-
 }  // namespace
 
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
@@ -368,8 +359,10 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   sections[kConnectivity] = std::move(coding == Coding::tables ? by_tables[kConnectivity] : walked.connectivity_bytes);
   sections[kDegenerate] = std::move(walked.degenerate_bytes);
   sections[kSeams] = std::move(walked.seam_bytes);
-  encode_vertices({walked, options, header, sections, coding == Coding::either ? &by_tables : nullptr});
-  if (coding == Coding::either) keep_fastest(header, sections, by_tables);
+  VertexSections::Speed speed;
+  encode_vertices({walked, options, header, sections, coding == Coding::either ? &by_tables : nullptr, speed});
+  if (coding == Coding::either) keep_fastest(header, speed.plain, speed.grown, sections, by_tables);
+  header.expected_tables = header.expected_tables && header.may_expect_tables();
   sections[kMaterials] = encode_materials(walked.points, walked.material);
   if (header.has(kFaceValues))
     sections[kFaceValues] = encode_face_values(walked.points, face_values_in_order(mesh, walked.order),

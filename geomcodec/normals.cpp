@@ -151,13 +151,13 @@ void NormalCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices) {
 }  // namespace
 
 std::vector<uint8_t> encode_normals(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
-                                    bool by_tables) {
-  return encode_attribute<NormalCoder>(mesh, vertices, bits, by_tables);
+                                    AttributeCoding coding) {
+  return encode_attribute<NormalCoder>(mesh, vertices, bits, coding);
 }
 
 Result<void> decode_normals(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                            std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
-  return decode_attribute<NormalCoder>(bytes, mesh, vertices, bits, by_tables);
+                            std::span<QuantizedVertex> vertices, int bits, AttributeCoding coding) {
+  return decode_attribute<NormalCoder>(bytes, mesh, vertices, bits, coding);
 }
 
 }  // namespace pac::geomcodec

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "base/exact_math.h"
+#include "geomcodec/size_estimator.h"
 
 namespace pac::geomcodec {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using Counts = std::array<uint32_t, kTableSymbols>;
 
 // How a context's table is told.
-enum TableKind : uint32_t { kUnused, kOneSymbol, kOwn, kAsBefore };
+enum TableKind : uint32_t { kExpected, kOneSymbol, kOwn, kAsBefore };
 
 uint64_t total_of(const Counts& counts) {
   uint64_t total = 0;
@@ -84,7 +84,6 @@ class BitsIn {
   bool failed_ = false;
 };
 
-constexpr double kLogOf2 = 0.69314718055994530942;
 constexpr int kLengthBits = 4;  // of a frequency, 0..11, or of a run of contexts, 1..11
 
 // Below 2^15.
@@ -142,41 +141,83 @@ FrequencyTable only(uint32_t symbol) {
   return table;
 }
 
-// What the counts take by a table, in bits; negative if it lacks a symbol.
-double cost(const Counts& counts, const FrequencyTable& table) {
-  double bits = 0;
+constexpr uint64_t kUnit = 65536;              // parts of a bit
+constexpr uint64_t kImpossible = kUnit << 40;  // a table that lacks a symbol
+constexpr uint64_t kRunBits = 10;              // about so many tell a run of expected tables
+
+// What the counts take by a table, in kUnit.
+uint64_t cost(const Counts& counts, const FrequencyTable& table) {
+  uint64_t sum = 0;
   for (size_t s = 0; s < kTableSymbols; ++s) {
     if (counts[s] == 0) continue;
-    if (table.entry[s].freq == 0) return -1;
-    bits += counts[s] * (kTableBits - exact_log(table.entry[s].freq) / kLogOf2);
+    if (table.entry[s].freq == 0) return kImpossible;
+    sum += counts[s] * (kTableBits * kUnit - logarithm_of(table.entry[s].freq));
   }
-  return bits;
+  return sum;
+}
+
+// A context's own table and what counts take by it, the telling included.
+struct OwnTable {
+  FrequencyTable table;
+  bool single = false;
+  uint64_t cost = kImpossible;
+
+  OwnTable() = default;
+  explicit OwnTable(const Counts& counts) {
+    if (total_of(counts) == 0) return;
+    table = normalized(counts);
+    single = table.entry[highest_of(table)].freq == kTableTotal;
+    cost = geomcodec::cost(counts, table) + (2 + (single ? 4 : bits_of_own(table))) * kUnit;
+  }
+};
+
+// Whether each context keeps the expected table, those together costing least.
+std::vector<uint8_t> choose_expected(std::span<const Counts> counts, std::span<const OwnTable> own,
+                                     const std::vector<const LookupTable*>& expected) {
+  // Least of all contexts up to this one if it has its own table, if it has the expected one, and whether the one
+  // before it has that then.
+  uint64_t with_own = 0, with_expected = kImpossible;
+  std::vector<std::array<uint8_t, 2>> before(counts.size());
+  for (size_t context = 0; context < counts.size(); ++context) {
+    const bool is_met = own[context].cost != kImpossible;
+    const uint64_t here = !is_met ? 0 : expected.empty() ? kImpossible : cost(counts[context], *expected[context]);
+    const uint64_t starts = with_own + kRunBits * kUnit;
+    before[context] = {static_cast<uint8_t>(with_expected < with_own), static_cast<uint8_t>(with_expected <= starts)};
+    with_own = std::min(with_own, with_expected) + own[context].cost;
+    with_expected = std::min(with_expected, starts) + here;
+  }
+  std::vector<uint8_t> keeps(counts.size());
+  uint8_t now = with_expected < with_own ? 1 : 0;
+  for (size_t context = counts.size(); context-- > 0; now = before[context][now]) keeps[context] = now;
+  return keeps;
 }
 
 // The table of each context, told as the cheapest of the kinds.
-std::vector<FrequencyTable> choose_tables(std::span<const Counts> counts, BitsOut& out) {
+std::vector<FrequencyTable> choose_tables(std::span<const Counts> counts, Expected what, BitsOut& out) {
+  const std::vector<const LookupTable*>& expected = expected_tables(what);
+  std::vector<OwnTable> own;
+  own.reserve(counts.size());
+  for (const Counts& of_context : counts) own.emplace_back(of_context);
+  const std::vector<uint8_t> keeps = choose_expected(counts, own, expected);
   std::vector<FrequencyTable> tables(counts.size());
   const FrequencyTable* before = nullptr;
   for (size_t context = 0; context < counts.size(); ++context) {
     size_t end = context;
-    while (end < counts.size() && total_of(counts[end]) == 0) ++end;
+    for (; end < counts.size() && keeps[end] != 0; ++end)
+      if (!expected.empty()) tables[end] = *expected[end];
     if (end > context) {
-      out.put(2, kUnused);
+      out.put(2, kExpected);
       put_number(out, static_cast<uint32_t>(end - context));
       context = end - 1;
       continue;
     }
-    tables[context] = normalized(counts[context]);
-    const size_t highest = highest_of(tables[context]);
-    const bool single = tables[context].entry[highest].freq == kTableTotal;
-    const double own = cost(counts[context], tables[context]) + (single ? 4 : bits_of_own(tables[context]));
-    const double shared = before == nullptr ? -1 : cost(counts[context], *before);
-    if (shared >= 0 && shared <= own) {
+    tables[context] = own[context].table;
+    if (before != nullptr && cost(counts[context], *before) + 2 * kUnit <= own[context].cost) {
       out.put(2, kAsBefore);
       tables[context] = *before;
-    } else if (single) {
+    } else if (own[context].single) {
       out.put(2, kOneSymbol);
-      out.put(4, static_cast<uint32_t>(highest));
+      out.put(4, static_cast<uint32_t>(highest_of(tables[context])));
     } else {
       out.put(2, kOwn);
       put_own(out, tables[context]);
@@ -192,7 +233,7 @@ std::vector<uint8_t> TableEncoder::finish() {
   std::vector<Counts> counts(n_contexts_, Counts{});
   for (const uint16_t note : noted_) ++counts[note >> 6][note >> 2 & 15];
   BitsOut out;
-  const std::vector<FrequencyTable> tables = choose_tables(counts, out);
+  const std::vector<FrequencyTable> tables = choose_tables(counts, expected_, out);
   std::vector<uint8_t> bytes = out.take();
 
   // Backwards, as a decoder meets the symbols forwards.
@@ -221,51 +262,57 @@ std::vector<uint8_t> TableEncoder::finish() {
   return bytes;
 }
 
-void SymbolTables::add(const FrequencyTable& table) {
-  tables_.push_back(table);
-  symbol_.resize(symbol_.size() + kTableTotal);
-  uint8_t* symbols = symbol_.data() + symbol_.size() - kTableTotal;
-  for (size_t s = 0; s < kTableSymbols; ++s)
-    std::fill_n(symbols + table.entry[s].start, table.entry[s].freq, static_cast<uint8_t>(s));
+// Of contexts that have none, where nothing is expected: only a broken stream asks.
+static const LookupTable* table_of_nothing() {
+  static const LookupTable table = [] {
+    LookupTable zeros;
+    zeros.assign(only(0));
+    return zeros;
+  }();
+  return &table;
 }
 
-size_t SymbolTables::parse(std::span<const uint8_t> bytes, size_t n_contexts) {
+size_t SymbolTables::parse(std::span<const uint8_t> bytes, size_t n_contexts, Expected expected) {
   BitsIn in(bytes);
-  tables_.clear();
-  symbol_.clear();
-  of_context_.assign(n_contexts, 0);
-  add(only(0));  // of contexts that no symbol has: only a broken stream asks
+  if (expected == Expected::nothing)
+    of_context_.assign(n_contexts, table_of_nothing());
+  else
+    of_context_ = expected_tables(expected);
+  std::vector<FrequencyTable> tables;
+  std::vector<std::pair<size_t, size_t>> uses;  // context, table
   for (size_t context = 0; context < n_contexts && !in.failed(); ++context) {
     FrequencyTable table;
     switch (in.get(2)) {
-      case kUnused: {
+      case kExpected: {
         const uint32_t run = get_number(in);
         if (run == 0 || run > n_contexts - context) return 0;
         context += run - 1;
         continue;
       }
       case kOneSymbol:
-        add(only(in.get(4)));
+        tables.push_back(only(in.get(4)));
         break;
       case kOwn:
         if (!get_own(in, table)) return 0;
-        add(table);
+        tables.push_back(table);
         break;
       default:
-        if (tables_.size() == 1) return 0;
+        if (tables.empty()) return 0;
     }
-    of_context_[context] = static_cast<uint16_t>(tables_.size() - 1);
+    uses.emplace_back(context, tables.size() - 1);
   }
   const size_t size = in.finish();
-  return in.failed() ? 0 : size;
+  if (in.failed()) return 0;
+  told_ = std::make_unique_for_overwrite<LookupTable[]>(tables.size());
+  for (size_t i = 0; i < tables.size(); ++i) told_[i].assign(tables[i]);
+  for (const auto& [context, table] : uses) of_context_[context] = &told_[table];
+  return size;
 }
 
-TableDecoder::TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, SymbolTables& tables)
+TableDecoder::TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, Expected expected, SymbolTables& tables)
     : data_(bytes.data()), size_(bytes.size()) {
-  const size_t tables_size = tables.parse(bytes, n_contexts);
+  const size_t tables_size = tables.parse(bytes, n_contexts, expected);
   of_context_ = tables.of_context();
-  symbols_ = tables.symbols();
-  tables_ = tables.tables();
   static constexpr uint8_t kNothing[2] = {0, 0};
   bool sound = tables_size > 0 && bytes.size() - tables_size >= 4 * kLanes;
   for (size_t lane = 0; lane < kLanes; ++lane) {

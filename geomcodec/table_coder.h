@@ -7,30 +7,24 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "geomcodec/expected_tables.h"
 #include "geomcodec/symbol_model.h"
 
 namespace pac::geomcodec {
 
-inline constexpr int kTableBits = 11;  // frequencies of a table add up to 2^11
-inline constexpr uint32_t kTableTotal = 1u << kTableBits, kLowestState = 1u << 16;
-inline constexpr size_t kTableSymbols = 16, kLanes = 4, kMaxTableContexts = 1024;
-
-// One context's symbols; freq 0 where one never occurs.
-struct FrequencyTable {
-  struct Entry {
-    uint16_t freq = 0, start = 0;
-  };
-  std::array<Entry, kTableSymbols> entry;
-};
+inline constexpr uint32_t kLowestState = 1u << 16;
+inline constexpr size_t kLanes = 4, kMaxTableContexts = 1024;
 
 class TableEncoder {
  public:
   static constexpr bool kDecodes = false, kTables = true;
 
-  explicit TableEncoder(size_t n_contexts) : n_contexts_(n_contexts) {}
+  // expected: what contexts have that are told no table.
+  TableEncoder(size_t n_contexts, Expected expected) : n_contexts_(n_contexts), expected_(expected) {}
   void reserve(size_t n_symbols) { noted_.reserve(n_symbols); }
   // symbol below 16 in a context below n_contexts, on one of four lanes.
   uint32_t symbol(uint32_t lane, uint32_t context, uint32_t symbol) {
@@ -53,6 +47,7 @@ class TableEncoder {
   }
 
   size_t n_contexts_;
+  Expected expected_;
   std::vector<uint16_t> noted_;
   std::vector<uint8_t> raw_bytes_;  // the section's last byte first
   uint64_t raw_word_ = 0;
@@ -63,18 +58,14 @@ class TableEncoder {
 class SymbolTables {
  public:
   // Reads what TableEncoder::finish() begins with; the number of bytes, 0 if they cannot come from it.
-  size_t parse(std::span<const uint8_t> bytes, size_t n_contexts);
+  size_t parse(std::span<const uint8_t> bytes, size_t n_contexts, Expected expected);
 
-  // Where they lie until the next parse(): per context the number of its table; 2^11 symbols per table; the tables.
-  const uint16_t* of_context() const { return of_context_.data(); }
-  const uint8_t* symbols() const { return symbol_.data(); }
-  const FrequencyTable* tables() const { return tables_.data(); }
+  // [context], where they lie until the next parse().
+  const LookupTable* const* of_context() const { return of_context_.data(); }
 
  private:
-  void add(const FrequencyTable& table);
-  std::vector<uint16_t> of_context_;
-  std::vector<uint8_t> symbol_;  // 2^11 per table
-  std::vector<FrequencyTable> tables_;
+  std::vector<const LookupTable*> of_context_;
+  std::unique_ptr<LookupTable[]> told_;
 };
 
 // Sticky: past the end it reads the section's last bytes again; failed() tells once it did.
@@ -83,13 +74,13 @@ class TableDecoder {
   static constexpr bool kDecodes = true, kTables = true;
 
   // tables must outlive the decoder, bytes too.
-  TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, SymbolTables& tables);
+  TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, Expected expected, SymbolTables& tables);
 
   [[gnu::always_inline]] uint32_t symbol(uint32_t lane, uint32_t context, uint32_t /*unused*/ = 0) {
     const uint32_t state = state_[lane], slot = state & (kTableTotal - 1);
-    const size_t table = of_context_[context];
-    const uint32_t symbol = symbols_[table << kTableBits | slot];
-    const FrequencyTable::Entry entry = tables_[table].entry[symbol];
+    const LookupTable& table = *of_context_[context];
+    const uint32_t symbol = table.symbol[slot];
+    const FrequencyTable::Entry entry = table.entry[symbol];
     const uint32_t next = entry.freq * (state >> kTableBits) + slot - entry.start;
     const uint8_t* at = data_ + (position_ < size_ - 2 ? position_ : size_ - 2);
     const uint32_t word = uint32_t{at[0]} | uint32_t{at[1]} << 8;
@@ -118,9 +109,7 @@ class TableDecoder {
  private:
   uint32_t raw_at_start(int count);
 
-  const uint16_t* of_context_;
-  const uint8_t* symbols_;
-  const FrequencyTable* tables_;
+  const LookupTable* const* of_context_;
   const uint8_t* data_;
   uint64_t size_;
   uint64_t position_ = 0;

@@ -10,10 +10,6 @@
 
 namespace pac::geomcodec {
 
-// By role, number of parallelograms (none, one, more), mean class of the neighbors in halves.
-inline constexpr uint32_t kPositionScales = 2 * kClasses + 1;
-inline constexpr size_t kPositionContexts = 3 * 3 * kPositionScales;
-
 template <class Coder>
 class TablePositionCoder {
  public:
@@ -169,10 +165,10 @@ void code_table_weights(Coder& coder, PositionWeights& weights) {
     weights.share[c][0] = static_cast<int8_t>(coder.raw(8, static_cast<uint8_t>(weights.share[c][0])));
 }
 
-// Like encode_positions() and decode_positions().
-std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::span<const Position> positions,
-                                                int bits);
+// Like encode_positions() and decode_positions(). expected: whether contexts without a table have what is expected.
+std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::span<const Position> positions, int bits,
+                                                bool expected);
 Result<std::vector<Position>> decode_positions_by_tables(std::span<const uint8_t> bytes, const Stencils& stencils,
-                                                         uint32_t n_positions, int bits);
+                                                         uint32_t n_positions, int bits, bool expected);
 
 }  // namespace pac::geomcodec

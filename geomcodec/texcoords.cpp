@@ -175,13 +175,13 @@ void TexcoordCoder<Coder>::code(uint32_t v, std::span<QuantizedVertex> vertices)
 }  // namespace
 
 std::vector<uint8_t> encode_texcoords(const AttributeMesh& mesh, std::span<const QuantizedVertex> vertices, int bits,
-                                      bool by_tables) {
-  return encode_attribute<TexcoordCoder>(mesh, vertices, bits, by_tables);
+                                      AttributeCoding coding) {
+  return encode_attribute<TexcoordCoder>(mesh, vertices, bits, coding);
 }
 
 Result<void> decode_texcoords(std::span<const uint8_t> bytes, const AttributeMesh& mesh,
-                              std::span<QuantizedVertex> vertices, int bits, bool by_tables) {
-  return decode_attribute<TexcoordCoder>(bytes, mesh, vertices, bits, by_tables);
+                              std::span<QuantizedVertex> vertices, int bits, AttributeCoding coding) {
+  return decode_attribute<TexcoordCoder>(bytes, mesh, vertices, bits, coding);
 }
 
 }  // namespace pac::geomcodec

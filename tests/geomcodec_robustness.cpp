@@ -168,6 +168,16 @@ TEST_CASE("each header field at its limit and one past it") {
     bytes->insert(bytes->begin() + 5, more, more + 2);
   }
   all_degenerate[13] = 2;
+  // Version 7 is there for expected tables, which sections by tables but connectivity have.
+  Bytes nothing_expected = header(4, 16, {0, 0, 1, 0, 0, 0, 0, 0}),
+        expected_by_faces = header(4, 16, {3, 0, 0, 1, 0, 0, 0, 0, 0});
+  for (Bytes* bytes : {&nothing_expected, &expected_by_faces}) {
+    (*bytes)[3] = 7;
+    const bool by_faces = bytes == &expected_by_faces;
+    const uint8_t more[2] = {static_cast<uint8_t>(by_faces ? 1 : 4), static_cast<uint8_t>(by_faces ? 16 : 0)};
+    bytes->insert(bytes->begin() + 5, more, more + 2);
+    repair_checksum(*bytes, bytes->size());
+  }
   repair_checksum(unknown_features, unknown_features.size());
   repair_checksum(all_degenerate, all_degenerate.size());
   const uint64_t top = 0x7FFFFFFF;
@@ -176,6 +186,8 @@ TEST_CASE("each header field at its limit and one past it") {
       {"version", version, Error::unsupported, "version of the stream is unknown"},
       {"choosing without a vertex", choosing_nothing, Error::corrupt, "positions that are not there choose"},
       {"unknown features", unknown_features, Error::corrupt, "features are unknown, or none that needs this version"},
+      {"no expected tables", nothing_expected, Error::corrupt, "features are unknown, or none that needs this version"},
+      {"expected tables of faces", expected_by_faces, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"all faces degenerate", all_degenerate, Error::corrupt, "no face or all of them are degenerate"},
       {"choosing by tables", choosing_by_tables, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,

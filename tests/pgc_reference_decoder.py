@@ -198,7 +198,7 @@ class Decoder:
 
 
 class TableDecoder:  # section 15
-    def __init__(self, data, contexts):
+    def __init__(self, data, contexts, expected):  # expected(context): its starts
         self.data, self.used, self.bits = data, 0, int.from_bytes(data, "big")
         self.forward, self.taken = int.from_bytes(data, "little"), 0
         self.tables, last = {}, None
@@ -206,7 +206,11 @@ class TableDecoder:  # section 15
         while context < contexts:
             kind = self.take(2)
             if kind == 0:
-                context += self.taken_number()
+                for context in range(context, context + self.taken_number()):
+                    if expected:
+                        starts = [i + (x * 2032 >> 15) for i, x in enumerate(expected(context))]
+                        self.tables[context] = [b - a for a, b in zip(starts, starts[1:])]
+                context += 1
                 continue
             if kind == 1:
                 last = [0] * 16
@@ -295,13 +299,14 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] in (3, 4, 5, 6)
+        assert b[:3] == b"PGC" and b[3] in (3, 4, 5, 6, 7)
         self.flags, self.at, self.b = b[4], 5, b
         self.chooses = b[3] == 5
         self.tables = self.byte() if b[3] > 3 else 0
-        features = self.byte() if b[3] == 6 else 0
-        if b[3] == 6:
-            assert features & 13 and features < 16
+        features = self.byte() if b[3] > 5 else 0
+        self.expects = features & 16 > 0
+        if b[3] > 5:
+            assert (features & 13 and features < 16) if b[3] == 6 else (self.expects and features < 32 and self.tables & 60)
             self.chooses = features & 2 > 0
         self.ranked, self.by_size = features & 4 > 0, features & 8 > 0
         assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if features & 14 or self.chooses else 0x3D) == 0
@@ -341,7 +346,26 @@ class Header(Fields):  # section 2
 
     def decoder(self, section, contexts):
         data = self.sections[section]
-        return TableDecoder(data, contexts) if self.tables >> section & 1 else Decoder(data)
+        expects = self.expects and section > 0
+        return TableDecoder(data, contexts, expects and self.expected(section)) if self.tables >> section & 1 else Decoder(data)
+
+    def expected(self, section):  # section 15
+        priors = read_priors()[0]
+
+        def starts(context):
+            if section == 2:
+                founded, scale = context // 35 % 3, min(33, context % 35)
+                return Symbols(halves=scale, weights=priors[(0, 2, 3)[founded]][scale]).start
+            if context >= 969:
+                return Symbols(2).start
+            if context < 105:
+                scale = min(33, context % 35)
+                return Symbols(halves=scale, weights=section == 3 and priors[4 + context // 35][scale] or None).start
+            component, other = 1 + (context - 105) // 288, (context - 105) % 288 // 18
+            trained = section == 3 and component < 3
+            return Symbols(halves=2 * other, weights=priors[9][34 + other] if trained else None).start
+
+        return starts
 
     def floats(self, n):
         self.at += 4 * n

@@ -12,8 +12,8 @@ namespace {
 // Where the checksum stands, by the header's layout (FORMAT.md section 2).
 size_t checksum_offset(const std::vector<uint8_t>& bytes) {
   if (bytes.size() < 7) return bytes.size();
-  const uint8_t flags = bytes[4], features = bytes[3] == 6 ? bytes[6] : 0;
-  size_t at = bytes[3] == 6 ? 8 : bytes[3] >= 4 ? 7 : 6;  // from version 4 on there is a byte more, in version 6 two
+  const uint8_t flags = bytes[4], features = bytes[3] >= 6 ? bytes[6] : 0;
+  size_t at = bytes[3] >= 6 ? 8 : bytes[3] >= 4 ? 7 : 6;  // from version 4 on there is a byte more, from 6 on two
   const auto number = [&] {
     uint64_t value = 0;
     for (int shift = 0; at < bytes.size(); shift += 7) {
