@@ -68,11 +68,13 @@ struct Header {
   bool may_expect_tables() const {
     return (tables & (1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords)) != 0;
   }
-  // Of colors, normals, texture.
-  AttributeCoding coding_of(Section section) const {
-    const Expected expected = section == kColors ? Expected::colors : Expected::others;
-    return {by_tables(section), expected_tables ? expected : Expected::nothing};
+  // What contexts of positions, colors, normals, texture have that no table is told of.
+  Expected expected_of(Section section) const {
+    if (!expected_tables) return Expected::nothing;
+    return section == kPositions ? Expected::positions : section == kColors ? Expected::colors : Expected::others;
   }
+  // Of colors, normals, texture.
+  AttributeCoding coding_of(Section section) const { return {by_tables(section), expected_of(section)}; }
   // Whether the fields above leave anything for a section to say.
   bool has(Section section) const;
 };

@@ -100,7 +100,7 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
   };
   auto positions = header.by_tables(kPositions)
                        ? decode_positions_by_tables(stream.section[kPositions], stencils, n_positions,
-                                                    header.position_bits, header.expected_tables)
+                                                    header.position_bits, header.expected_of(kPositions))
                    : header.ranked ? decode_ranked()
                                    : adaptive(points, stencils);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
@@ -152,7 +152,8 @@ Result<void> decode_without_seams(const ParsedStream& stream, const Topology& po
                               header.position_bits,
                               header.trained,
                               header.chooses,
-                              header.expected_tables};
+                              header.expected_of(kPositions),
+                              header.expected_of(kColors)};
     const bool done = decode_positions_and_colors(coded, attributes, mesh.vertices, failure);
     if (!done) return at(failure.failure, stream.section_offset(failure.in_colors ? kColors : kPositions));
   } else {

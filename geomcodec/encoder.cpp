@@ -297,7 +297,7 @@ bool tables_suffice(const Stencils& stencils, std::span<const Position> position
   plain = PlainBytes(out.sections[kConnectivity].size(), estimate_plainly(stencils, positions));
   if (plain.are_raw(out.header)) return false;
   std::vector<uint8_t>& by_tables = (*out.by_tables)[kPositions];
-  by_tables = encode_positions_by_tables(stencils, positions, bits, out.header.expected_tables);
+  by_tables = encode_positions_by_tables(stencils, positions, bits, out.header.expected_of(kPositions));
   if (!plain.tables_may_suffice(by_tables.size())) return false;
   const uint64_t adaptive_bytes = estimate_choosing(out.walked.points, stencils, positions, bits) * 33 / (8 * 32);
   if (!plain.tables_suffice(by_tables.size(), adaptive_bytes)) return false;
@@ -312,7 +312,7 @@ void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
   const int bits = header.position_bits;
   std::vector<uint8_t>& section = out.sections[kPositions];
   if (header.by_tables(kPositions)) {
-    section = encode_positions_by_tables(stencils, positions, bits, header.expected_tables);
+    section = encode_positions_by_tables(stencils, positions, bits, header.expected_of(kPositions));
     if (out.options.effort == Effort::fast) return;
     const Ranked ranked(walked.points, stencils, positions);
     if (!choosing_pays(walked, stencils, positions, ranked, bits, out.options.trained_priors, section.size())) return;

@@ -105,7 +105,7 @@ PositionWeights fit_shares(const Sampled& sampled, std::span<const Position> pos
 }  // namespace
 
 std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::span<const Position> positions, int bits,
-                                                bool expected) {
+                                                Expected expected) {
   std::vector<KnownPosition> known;
   known.reserve(positions.size());
   for (const Position& position : positions) known.push_back({PackedPosition(position), 0});
@@ -127,7 +127,7 @@ std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::s
     best.raw = true;
   }
 
-  TableEncoder coder(kPositionContexts, expected ? Expected::positions : Expected::nothing);
+  TableEncoder coder(kPositionContexts, expected);
   coder.reserve(best.raw ? 0 : 3 * positions.size());
   code_table_weights(coder, best);
   TablePositionCoder<TableEncoder> position_coder(coder, best, bits, known);
@@ -141,9 +141,9 @@ std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::s
 }
 
 Result<std::vector<Position>> decode_positions_by_tables(std::span<const uint8_t> bytes, const Stencils& stencils,
-                                                         uint32_t n_positions, int bits, bool expected) {
+                                                         uint32_t n_positions, int bits, Expected expected) {
   SymbolTables tables;
-  TableDecoder coder(bytes, kPositionContexts, expected ? Expected::positions : Expected::nothing, tables);
+  TableDecoder coder(bytes, kPositionContexts, expected, tables);
   PositionWeights weights;
   code_table_weights(coder, weights);
   std::vector<KnownPosition> known;

@@ -165,10 +165,10 @@ void code_table_weights(Coder& coder, PositionWeights& weights) {
     weights.share[c][0] = static_cast<int8_t>(coder.raw(8, static_cast<uint8_t>(weights.share[c][0])));
 }
 
-// Like encode_positions() and decode_positions(). expected: whether contexts without a table have what is expected.
+// Like encode_positions() and decode_positions(). expected: what contexts have that no table is told of.
 std::vector<uint8_t> encode_positions_by_tables(const Stencils& stencils, std::span<const Position> positions, int bits,
-                                                bool expected);
+                                                Expected expected);
 Result<std::vector<Position>> decode_positions_by_tables(std::span<const uint8_t> bytes, const Stencils& stencils,
-                                                         uint32_t n_positions, int bits, bool expected);
+                                                         uint32_t n_positions, int bits, Expected expected);
 
 }  // namespace pac::geomcodec

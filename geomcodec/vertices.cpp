@@ -44,8 +44,7 @@ bool decode_positions_and_colors(const CodedVertices& coded, const AttributeMesh
     };
     if (coded.colors_by_tables) {
       SymbolTables tables;
-      TableDecoder of_colors(coded.colors, kAttributeContexts, coded.expected ? Expected::colors : Expected::nothing,
-                             tables);
+      TableDecoder of_colors(coded.colors, kAttributeContexts, coded.expected_colors, tables);
       return decode_from(of_colors);
     }
     RangeDecoder of_colors(coded.colors);
@@ -54,8 +53,7 @@ bool decode_positions_and_colors(const CodedVertices& coded, const AttributeMesh
   PositionWeights weights;
   if (coded.positions_by_tables) {
     SymbolTables tables;
-    TableDecoder of_positions(coded.positions, kPositionContexts,
-                              coded.expected ? Expected::positions : Expected::nothing, tables);
+    TableDecoder of_positions(coded.positions, kPositionContexts, coded.expected_positions, tables);
     code_table_weights(of_positions, weights);
     std::vector<KnownPosition> known(vertices.size());
     TablePositionCoder<TableDecoder> coder(of_positions, weights, coded.position_bits, known);

@@ -20,7 +20,8 @@ struct CodedVertices {
   std::span<const uint8_t> positions, colors;
   bool positions_by_tables = false, colors_by_tables = false;
   int position_bits = 0;
-  bool trained = false, chooses = false, expected = false;  // as the header says
+  bool trained = false, chooses = false;                                                 // as the header says
+  Expected expected_positions = Expected::nothing, expected_colors = Expected::nothing;  // what it lets expect
 };
 
 // The same positions and colors that decode_positions() and decode_colors() or their likes by tables find one after the
