@@ -35,7 +35,8 @@ struct Renderer::State {
   Result<const ShadowScene*> prepare_shadows(const Scene& scene, const Mesh& mesh, const RenderQuality& quality,
                                              int rendering);
   Result<RenderStats> draw(const Scene& scene, const Camera& camera, const RenderQuality* const qualities[2],
-                           const Camera* previous_camera, PaintInput& input);
+                           const Camera* previous_camera, PaintInput& input, const RowsDrawn* drawn = nullptr);
+  void paint(PaintInput& input, const RowsDrawn* drawn);
 };
 
 namespace {
@@ -123,7 +124,7 @@ Result<const ShadowScene*> Renderer::State::prepare_shadows(const Scene& scene, 
 
 Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& camera,
                                           const RenderQuality* const qualities[2], const Camera* previous_camera,
-                                          PaintInput& input) {
+                                          PaintInput& input, const RowsDrawn* drawn) {
   if (!is_usable(camera.clip_from_world))
     return Failure{Error::bad_argument, 0, "camera matrix is singular or not finite"};
   if (!input.previous.empty() && (previous_camera == nullptr || !is_usable(previous_camera->clip_from_world)))
@@ -188,8 +189,19 @@ Result<RenderStats> Renderer::State::draw(const Scene& scene, const Camera& came
   input.width = width;
   input.height = height;
   for (int c = 0; c < 3; ++c) input.background[c] = to_byte(scene.background[c]);
-  paint_tiles(input, painters, pool);
+  paint(input, drawn);
   return stats;
+}
+
+void Renderer::State::paint(PaintInput& input, const RowsDrawn* drawn) {
+  const int columns = draw_list.tiles_x(), rows = draw_list.tiles_y();
+  if (drawn == nullptr) return paint_tiles(input, painters, pool, 0, columns * rows);
+  static_assert(kBandRows == kTileSize);
+  for (int row = 0; row < rows; ++row) {
+    input.first_row = row * kBandRows;
+    paint_tiles(input, painters, pool, columns * row, columns * (row + 1));
+    (*drawn)(input.first_row, std::min(input.first_row + kBandRows, height));
+  }
 }
 
 Result<RenderStats> Renderer::render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
@@ -205,6 +217,20 @@ Result<RenderStats> Renderer::render(const Scene& scene, const Camera& camera, c
   input.previous = targets.previous;
   const RenderQuality* const qualities[2] = {&quality, nullptr};
   return state_->draw(scene, camera, qualities, targets.previous_camera, input);
+}
+
+Result<RenderStats> Renderer::render_bands(const Scene& scene, const Camera& camera, const RenderQuality& quality,
+                                           const RenderTargets& targets, const RowsDrawn& drawn) {
+  const int w = state_->width, h = state_->height;
+  if (!fits(targets.color, w, h) || !fits(targets.depth, w, kBandRows) || !fits(targets.id, w, kBandRows))
+    return Failure{Error::bad_argument, 0, "target size is not the renderer's"};
+  if (!targets.previous.empty()) return Failure{Error::bad_argument, 0, "bands have no previous places"};
+  PaintInput input{};
+  input.color[0] = targets.color;
+  input.depth = targets.depth;
+  input.id = targets.id;
+  const RenderQuality* const qualities[2] = {&quality, nullptr};
+  return state_->draw(scene, camera, qualities, nullptr, input, &drawn);
 }
 
 Result<RenderStats> Renderer::render_pair(const Scene& scene, const Camera& camera, const RenderQuality& high,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "base/image.h"
@@ -58,6 +59,10 @@ struct RenderTargets {
 };
 constexpr float kNoPrevious = -65536.0f;
 
+constexpr int kBandRows = 32;
+// Rows first..last - 1 of a picture are drawn.
+using RowsDrawn = std::function<void(int first, int last)>;
+
 struct RenderStats {
   uint64_t triangles_submitted = 0;  // after polygons are cut, before clipping
   uint64_t triangles_drawn = 0;      // after clipping and culling
@@ -84,6 +89,12 @@ class Renderer {
   // (samples, shading_samples, view sizes, a camera that is singular or not finite).
   Result<RenderStats> render(const Scene& scene, const Camera& camera, const RenderQuality& quality,
                              const RenderTargets& targets);
+
+  // The same, for who uses a picture's rows as they come, while they are in the cache: `drawn` is called for kBandRows
+  // rows, or what is left, after the other, from the top, before the next ones are begun. targets.depth and id have
+  // kBandRows rows: at each call, those of the rows that are drawn. bad_argument where `previous` is wanted.
+  Result<RenderStats> render_bands(const Scene& scene, const Camera& camera, const RenderQuality& quality,
+                                   const RenderTargets& targets, const RowsDrawn& drawn);
 
   // H, L and D = 127 + (H-L)/2 of a split that shares the geometry, in one traversal [Levoy95 s.4.1 footnote]:
   // clipping, setup, visibility once. `high` and `low` must have equal samples and cull_back_faces; shading_samples may

@@ -160,12 +160,12 @@ Camera camera_of(const LightView& view) {
 
 }  // namespace
 
-void paint_tiles(const PaintInput& input, const std::vector<std::unique_ptr<TilePainter>>& painters, ThreadPool& pool) {
-  const int n_tiles = input.draw_list->tiles_x() * input.draw_list->tiles_y();
-  std::atomic<int> next{0};
+void paint_tiles(const PaintInput& input, const std::vector<std::unique_ptr<TilePainter>>& painters, ThreadPool& pool,
+                 int first, int last) {
+  std::atomic<int> next{first};
   pool.for_each(static_cast<int64_t>(painters.size()), [&](int64_t thread) {
     TilePainter& painter = *painters[static_cast<size_t>(thread)];
-    for (int tile = next.fetch_add(1); tile < n_tiles; tile = next.fetch_add(1)) painter.paint(input, tile);
+    for (int tile = next.fetch_add(1); tile < last; tile = next.fetch_add(1)) painter.paint(input, tile);
   });
 }
 
@@ -204,7 +204,7 @@ Result<void> ShadowMaps::draw(const Scene& scene, const Mesh& mesh, int side, co
     input.surfaces[0] = &surfaces_;
     input.has_transparent = true;
     input.depth = {depths_[i].data(), texels, texels, texels};
-    paint_tiles(input, painters, pool);
+    paint_tiles(input, painters, pool, 0, draw_list_.tiles_x() * draw_list_.tiles_y());
     set_lookup(view, texels, out.maps[i]);
     out.maps[i].depths = depths_[i].data();
   }

@@ -26,7 +26,8 @@ class ShadowMaps {
   std::vector<std::vector<float>> depths_;  // of each light
 };
 
-// All tiles of a frame, by one painter a thread.
-void paint_tiles(const PaintInput& input, const std::vector<std::unique_ptr<TilePainter>>& painters, ThreadPool& pool);
+// Tiles first..last - 1 of a frame, by one painter a thread.
+void paint_tiles(const PaintInput& input, const std::vector<std::unique_ptr<TilePainter>>& painters, ThreadPool& pool,
+                 int first, int last);
 
 }  // namespace pac::raster

@@ -19,9 +19,9 @@ void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::spa
   input.kernels->tile.rasterize_grid(triangles_.data(), static_cast<uint32_t>(triangles_.size()), corner, grid_);
   if (first_sample == 0 && takes_first_sample_from_grid(input)) {
     const bool has_depth = !input.depth.empty(), has_ids = !input.id.empty();
-    const FirstSampleTarget target{
-        has_depth ? input.depth.pixel(area.x, area.y) : depth_, has_depth ? input.depth.stride : kTileSize,
-        has_ids ? input.id.pixel(area.x, area.y) : ids_, has_ids ? input.id.stride : kTileSize};
+    const FirstSampleTarget target{has_depth ? input.depth_at(area.x, area.y) : depth_,
+                                   has_depth ? input.depth.stride : kTileSize,
+                                   has_ids ? input.id_at(area.x, area.y) : ids_, has_ids ? input.id.stride : kTileSize};
     if (has_depth || has_ids)
       input.kernels->tile.first_sample(grid_, area.width, area.height, triangles_.data(), corner, target);
   }

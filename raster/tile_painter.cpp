@@ -304,9 +304,9 @@ void TilePainter::add_sample(const PaintInput& input, int rendering) {
 void TilePainter::write_depth_and_id(const PaintInput& input, const Area& area) const {
   if (input.depth.empty() && input.id.empty()) return;
   for (int y = 0; y < area.height; ++y) {
-    if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth.pixel(area.x, area.y + y));
+    if (!input.depth.empty()) std::copy_n(depth_ + y * kTileSize, area.width, input.depth_at(area.x, area.y + y));
     if (input.id.empty()) continue;
-    uint32_t* out = input.id.pixel(area.x, area.y + y);
+    uint32_t* out = input.id_at(area.x, area.y + y);
     for (int x = 0; x < area.width; ++x) {
       const uint32_t id = ids_[y * kTileSize + x];
       out[x] = id == 0 ? 0 : triangles_[id - 1]->id;
@@ -334,8 +334,8 @@ void TilePainter::write_background(const PaintInput& input, const Area& area) {
     if (!input.difference.empty())
       input.kernels->pixel.difference_row(row, row, input.difference.pixel(area.x, area.y + y),
                                           3 * static_cast<size_t>(area.width));
-    if (!input.depth.empty()) std::fill_n(input.depth.pixel(area.x, area.y + y), area.width, 1.0f);
-    if (!input.id.empty()) std::fill_n(input.id.pixel(area.x, area.y + y), area.width, 0u);
+    if (!input.depth.empty()) std::fill_n(input.depth_at(area.x, area.y + y), area.width, 1.0f);
+    if (!input.id.empty()) std::fill_n(input.id_at(area.x, area.y + y), area.width, 0u);
   }
   if (!input.previous.empty()) clear_previous(input, area);
 }

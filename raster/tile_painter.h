@@ -33,6 +33,10 @@ struct PaintInput {
   PlaneView<float> depth;
   PlaneView<uint32_t> id;
   ImageView<float, 3> previous;
+  int first_row;  // of the picture: where depth and id begin
+
+  float* depth_at(int x, int y) const { return depth.pixel(x, y - first_row); }
+  uint32_t* id_at(int x, int y) const { return id.pixel(x, y - first_row); }
 };
 
 // The working memory of one thread.

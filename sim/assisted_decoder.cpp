@@ -54,7 +54,8 @@ struct AssistedDecoder::State {
   PicturePacker packer;
   Bytes unpacked;
   const Frame420* reference = nullptr;
-  bool was_key = false;
+  std::span<const uint8_t> bytes;  // of the frame that was begun
+  bool is_predicted = false, was_key = false;
 };
 
 Result<AssistedDecoder> AssistedDecoder::create(const AssistedScene& scene, const Limits& limits, Isa isa) {
@@ -74,6 +75,13 @@ bool AssistedDecoder::last_was_key() const {
 Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbView low, PlaneView<const float> depth,
                                      PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown,
                                      std::span<const glm::mat4> objects) {
+  PAC_CHECK(begin(bytes, camera, objects));
+  add_rows(low, depth, id, 0, low.height);
+  return end(low, shown);
+}
+
+Result<void> AssistedDecoder::begin(std::span<const uint8_t> bytes, const raster::Camera& camera,
+                                    std::span<const glm::mat4> objects) {
   State& s = *state_;
   if (bytes.empty()) return Failure{Error::truncated, 0, "video frame has no bytes"};
   const int prediction = (bytes[0] & kPredictionMask) >> kPredictionShift;
@@ -85,10 +93,22 @@ Result<void> AssistedDecoder::decode(std::span<const uint8_t> bytes, ConstRgbVie
   if (is_full && kind == Prediction::block) return Failure{Error::corrupt, 0, "block prediction of full differences"};
   const bool is_ratio = (bytes[0] & kRatio) != 0;
   if (is_ratio && !is_full) return Failure{Error::corrupt, 0, "ratios of halved differences"};
+  s.bytes = bytes;
   s.was_key = (bytes[0] & kKey) != 0;
-  s.reference =
-      s.shared.reference(kind, is_full ? Difference::full : Difference::halved,
-                         is_ratio ? Residual::ratio : Residual::additive, s.was_key, low, depth, id, camera, objects);
+  s.is_predicted = s.shared.begin(kind, is_full ? Difference::full : Difference::halved,
+                                  is_ratio ? Residual::ratio : Residual::additive, s.was_key, camera, objects);
+  return {};
+}
+
+void AssistedDecoder::add_rows(ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id, int first,
+                               int last) {
+  if (state_->is_predicted) state_->shared.add_rows(low, depth, id, first, last);
+}
+
+Result<void> AssistedDecoder::end(ConstRgbView low, RgbView shown) {
+  State& s = *state_;
+  const std::span<const uint8_t> bytes = s.bytes;
+  s.reference = s.is_predicted ? s.shared.end() : nullptr;
   std::span<const uint8_t> picture_bytes = bytes.subspan(1);
   if ((bytes[0] & kPacked) != 0) {
     if (s.reference == nullptr) return Failure{Error::corrupt, 0, "packed picture without the model's prediction"};

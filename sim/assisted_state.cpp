@@ -38,20 +38,38 @@ AssistedState::AssistedState(const AssistedScene& scene, Isa isa)
 const Frame420* AssistedState::reference(Prediction prediction, Difference difference, Residual residual, bool is_key,
                                          ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id,
                                          const raster::Camera& camera, std::span<const glm::mat4> objects) {
+  if (!begin(prediction, difference, residual, is_key, camera, objects)) return nullptr;
+  add_rows(low, depth, id, 0, low.height);
+  return end();
+}
+
+bool AssistedState::begin(Prediction prediction, Difference difference, Residual residual, bool is_key,
+                          const raster::Camera& camera, std::span<const glm::mat4> objects) {
   is_full_ = difference == Difference::full;
   is_ratio_ = residual == Residual::ratio;
-  if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return nullptr;
-  if (is_full_)
-    frame420_of(low, base_);
-  else
-    fill_gray();
+  if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return false;
+  if (!is_full_) fill_gray();
   if (is_key || prediction == Prediction::none) predictor_.forget();
-  return &predictor_.reference(base_, depth, id, camera, objects);
+  predictor_.begin(camera, objects);
+  return true;
+}
+
+void AssistedState::add_rows(ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id, int first,
+                             int last) {
+  if (is_full_) frame420_rows_of(low, first, last, base_);
+  predictor_.add_rows(base_, depth, id, first, last);
 }
 
 void AssistedState::frame420_of(ConstRgbView picture, Frame420& frame) {
-  if (is_ratio_) log_from_rgb(picture, codes_.view());
-  frame420_from_rgb(is_ratio_ ? ConstRgbView(codes_.view()) : picture, frame, isa_);
+  frame420_rows_of(picture, 0, picture.height, frame);
+}
+
+void AssistedState::frame420_rows_of(ConstRgbView picture, int first, int last, Frame420& frame) {
+  if (!is_ratio_) return frame420_rows_from_rgb(picture, first, last, frame, isa_);
+  const int n = last - first;
+  log_from_rgb({picture.row(first), picture.width, n, picture.stride},
+               {codes_.row(first), codes_.width(), n, codes_.view().stride});
+  frame420_rows_from_rgb(codes_.view(), first, last, frame, isa_);
 }
 
 void AssistedState::keep(const mpeg1::FrameView& coded, bool uses_predictor) {

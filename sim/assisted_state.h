@@ -27,6 +27,13 @@ class AssistedState {
                             ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id,
                             const raster::Camera& camera, std::span<const glm::mat4> objects);
 
+  // The same by rows as they are drawn: begin(), whether there is a predicting picture at all; if so, rows as
+  // ModelPredictor::add_rows() has them, `low` the whole picture, and end().
+  bool begin(Prediction prediction, Difference difference, Residual residual, bool is_key, const raster::Camera& camera,
+             std::span<const glm::mat4> objects);
+  void add_rows(ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id, int first, int last);
+  const Frame420* end() { return &predictor_.end(); }
+
   // Of the frame whose reference was asked for last; empty where it was the codec's own.
   PlaneView<const uint32_t> surface() const { return predictor_.surface(); }
 
@@ -42,6 +49,7 @@ class AssistedState {
 
  private:
   void fill_gray();
+  void frame420_rows_of(ConstRgbView picture, int first, int last, Frame420& frame);
 
   Isa isa_;
   bool is_full_ = true, is_ratio_ = false;

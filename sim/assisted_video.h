@@ -131,6 +131,14 @@ class AssistedDecoder {
                       PlaneView<const uint32_t> id, const raster::Camera& camera, RgbView shown,
                       std::span<const glm::mat4> objects = {});
 
+  // The same by rows as they are drawn: begin(), all rows of L from the top, as
+  // ModelPredictor::add_rows() has them, `low` the whole picture; then end(). `bytes` and `objects` are read until
+  // then. A frame that is not ended leaves the decoder ready for the next one that stands alone.
+  Result<void> begin(std::span<const uint8_t> bytes, const raster::Camera& camera,
+                     std::span<const glm::mat4> objects = {});
+  void add_rows(ConstRgbView low, PlaneView<const float> depth, PlaneView<const uint32_t> id, int first, int last);
+  Result<void> end(ConstRgbView low, RgbView shown);
+
   // The last picture stood alone.
   bool last_was_key() const;
 

@@ -25,13 +25,14 @@ struct Client::State {
   uint32_t frame_number = 0;
   bool exact = true;  // no picture that this one depends on was lost
   bool started = false;
-  DepthImage depth;  // of L: where pictures are predicted
+  DepthImage depth;  // of L: where pictures are predicted; of video a band at a time
   IdImage id;
   std::optional<AssistedDecoder> video;
   std::optional<StillPredictor> stills;
   PacketReader packets;
 
   Result<void> prepare(const FramePacket& packet);
+  Result<uint64_t> draw_low(const FramePacket& packet);
   Result<bool> show_still(const FramePacket& packet, RgbView picture);
 };
 
@@ -57,7 +58,8 @@ Result<void> Client::State::prepare(const FramePacket& packet) {
       PAC_TRY(video, AssistedDecoder::create(seen, limits, options.isa));
     }
     if (packet.codec == Codec::predicted_jpeg && !stills) stills.emplace(seen, options.isa);
-    if (depth.width() == 0) depth = DepthImage(width, height), id = IdImage(width, height);
+    const int rows = packet.codec == Codec::mpeg1 ? raster::kBandRows : height;
+    if (depth.height() != rows) depth = DepthImage(width, rows), id = IdImage(width, rows);
   }
   if (packet.codec == Codec::mpeg1) return {};
   PacketStill still{false, packet.difference};
@@ -69,6 +71,27 @@ Result<void> Client::State::prepare(const FramePacket& packet) {
   if (info.width != width || info.height != height)
     return Failure{Error::corrupt, 0, "difference image has another size than the session"};
   return {};
+}
+
+// L and its hash. Video is predicted from its rows as they come.
+Result<uint64_t> Client::State::draw_low(const FramePacket& packet) {
+  if (packet.has_model) {
+    PAC_CHECK(draw_screen_model(renderer, packet.model, quality, background, low.view(), options.limits));
+    return image_hash(low.view());
+  }
+  PAC_CHECK(move_objects(packet.objects, model));
+  const raster::RenderTargets targets{low.view(), depth.view(), id.view()};
+  if (packet.codec != Codec::mpeg1) {
+    PAC_CHECK(renderer.render(model, packet.camera, quality, targets));
+    return image_hash(low.view());
+  }
+  PAC_CHECK(video->begin(packet.difference, packet.camera, packet.objects));
+  ImageHash hash(width, height);
+  PAC_CHECK(renderer.render_bands(model, packet.camera, quality, targets, [&](int first, int last) {
+    for (int y = first; y < last; ++y) hash.add_row(low.row(y));
+    video->add_rows(low.view(), depth.view(), id.view(), first, last);
+  }));
+  return hash.finish();
 }
 
 // Whether the picture stood alone. One that is damaged changes nothing.
@@ -137,27 +160,17 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
     return Failure{Error::corrupt, 7, "packet and session disagree about where the model is"};
   PAC_CHECK(state.prepare(packet));
 
-  const raster::RenderTargets targets{state.low.view(), state.depth.view(), state.id.view()};
-  if (packet.has_model) {
-    PAC_CHECK(draw_screen_model(state.renderer, packet.model, state.quality, state.background, state.low.view(),
-                                state.options.limits));
-  } else {
-    PAC_CHECK(move_objects(packet.objects, state.model));
-    PAC_CHECK(state.renderer.render(state.model, packet.camera, state.quality, targets));
-  }
-  const bool in_order = state.started && packet.frame == state.frame_number + 1;
+  const bool was_exact = state.exact && state.started && packet.frame == state.frame_number + 1;
+  if (packet.codec != Codec::jpeg) state.exact = false;  // where this picture fails, the next one depends on a lost one
+  PAC_TRY(const uint64_t hash, state.draw_low(packet));
   state.frame_number = packet.frame;
-  const uint64_t hash = image_hash(state.low.view());
   if ((packet.is_short ? static_cast<uint32_t>(hash) : hash) != packet.low_hash)
     return Failure{Error::corrupt, packet.is_short ? 3u : 96u, "low-quality rendering differs from the server's"};
   if (packet.codec == Codec::jpeg) return receive_jpeg(packet, state.low, state.options);
 
   RgbImage picture(state.width, state.height);
-  const bool was_exact = state.exact && in_order;
-  state.exact = false;  // where this picture fails, the next one depends on a lost one
   if (packet.codec == Codec::mpeg1) {
-    PAC_CHECK(state.video->decode(packet.difference, state.low.view(), state.depth.view(), state.id.view(),
-                                  packet.camera, picture.view(), packet.objects));
+    PAC_CHECK(state.video->end(state.low.view(), picture.view()));
     state.exact = was_exact || state.video->last_was_key();
   } else {
     PAC_TRY(const bool stands_alone, state.show_still(packet, picture.view()));

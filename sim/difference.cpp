@@ -21,45 +21,20 @@ bool same_size(const A& a, const B& b) {
   return a.width == b.width && a.height == b.height;
 }
 
-// Four words at a time, each in a lane of its own, so that no multiplication waits for the one before.
-class LaneHash {
- public:
-  void add(uint64_t word, size_t lane) {
-    // One to one in the word: two pictures that differ in one word never collide.
-    lanes_[lane] = std::rotl(lanes_[lane] ^ word, 29) * 0x9E3779B97F4A7C15u;
+uint64_t word_of(const uint8_t* bytes, size_t count) {
+  uint64_t word = 0;
+  if constexpr (std::endian::native == std::endian::little) {
+    std::memcpy(&word, bytes, count);
+  } else {
+    for (size_t i = 0; i < count; ++i) word |= uint64_t{bytes[i]} << 8 * i;
   }
+  return word;
+}
 
-  // The bytes after the last whole word are filled up with zeros.
-  void add(const uint8_t* bytes, size_t count) {
-    size_t at = 0;
-    for (; at + 32 <= count; at += 32)
-      for (size_t lane = 0; lane < 4; ++lane) add(word_of(bytes + at + 8 * lane, 8), lane);
-    for (size_t lane = 0; at < count; at += 8, ++lane) add(word_of(bytes + at, std::min<size_t>(8, count - at)), lane);
-  }
-
-  uint64_t finish() const {
-    uint64_t hash = 0;
-    for (const uint64_t lane : lanes_) {
-      hash = (hash ^ lane) * 0xD6E8FEB86659FD93u;
-      hash ^= hash >> 32;
-    }
-    hash *= 0xD6E8FEB86659FD93u;
-    return hash ^ hash >> 32;
-  }
-
- private:
-  static uint64_t word_of(const uint8_t* bytes, size_t count) {
-    uint64_t word = 0;
-    if constexpr (std::endian::native == std::endian::little) {
-      std::memcpy(&word, bytes, count);
-    } else {
-      for (size_t i = 0; i < count; ++i) word |= uint64_t{bytes[i]} << 8 * i;
-    }
-    return word;
-  }
-
-  uint64_t lanes_[4] = {1, 2, 3, 4};
-};
+// One to one in the word: two pictures that differ in one word never collide.
+uint64_t mixed_in(uint64_t lane, uint64_t word) {
+  return std::rotl(lane ^ word, 29) * 0x9E3779B97F4A7C15u;
+}
 
 }  // namespace
 
@@ -77,10 +52,35 @@ void composite_image(ConstRgbView low, ConstRgbView difference, RgbView composit
     composite_row(low.row(y), difference.row(y), composite.row(y), static_cast<size_t>(low.width) * 3);
 }
 
+ImageHash::ImageHash(int width, int height) : row_bytes_(static_cast<size_t>(width) * 3) {
+  lanes_[0] = mixed_in(lanes_[0], static_cast<uint64_t>(width) << 32 | static_cast<uint32_t>(height));
+}
+
+// Four words at a time, each in a lane of its own, so that no multiplication waits for the one before. The bytes after
+// the last whole word are filled up with zeros.
+void ImageHash::add_row(const uint8_t* rgb) {
+  uint64_t lanes[4] = {lanes_[0], lanes_[1], lanes_[2], lanes_[3]};
+  size_t at = 0;
+  for (; at + 32 <= row_bytes_; at += 32)
+    for (size_t lane = 0; lane < 4; ++lane) lanes[lane] = mixed_in(lanes[lane], word_of(rgb + at + 8 * lane, 8));
+  for (size_t lane = 0; at < row_bytes_; at += 8, ++lane)
+    lanes[lane] = mixed_in(lanes[lane], word_of(rgb + at, std::min<size_t>(8, row_bytes_ - at)));
+  std::copy_n(lanes, 4, lanes_);
+}
+
+uint64_t ImageHash::finish() const {
+  uint64_t hash = 0;
+  for (const uint64_t lane : lanes_) {
+    hash = (hash ^ lane) * 0xD6E8FEB86659FD93u;
+    hash ^= hash >> 32;
+  }
+  hash *= 0xD6E8FEB86659FD93u;
+  return hash ^ hash >> 32;
+}
+
 uint64_t image_hash(ConstRgbView image) {
-  LaneHash hash;
-  hash.add(static_cast<uint64_t>(image.width) << 32 | static_cast<uint32_t>(image.height), 0);
-  for (int y = 0; y < image.height; ++y) hash.add(image.row(y), static_cast<size_t>(image.width) * 3);
+  ImageHash hash(image.width, image.height);
+  for (int y = 0; y < image.height; ++y) hash.add_row(image.row(y));
   return hash.finish();
 }
 

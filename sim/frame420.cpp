@@ -25,7 +25,12 @@ struct RowPair {
 }  // namespace
 
 void frame420_from_rgb(ConstRgbView picture, Frame420& frame, Isa isa) {
+  frame420_rows_from_rgb(picture, 0, picture.height, frame, isa);
+}
+
+void frame420_rows_from_rgb(ConstRgbView picture, int first, int last, Frame420& frame, Isa isa) {
   PAC_ASSERT(frame.width() == picture.width && frame.height() == picture.height);
+  PAC_ASSERT(first % 2 == 0 && (last % 2 == 0 || last == picture.height));
   if (picture.empty()) return;
   const PixelKernels& kernels = pixel_kernels(isa);
   const auto n = static_cast<size_t>(picture.width);
@@ -35,7 +40,7 @@ void frame420_from_rgb(ConstRgbView picture, Frame420& frame, Isa isa) {
     cb_row[n] = cb_row[n - 1];
     cr_row[n] = cr_row[n - 1];
   };
-  for (int y = 0; y < frame.cb.height(); ++y) {
+  for (int y = first / 2; y < (last + 1) / 2; ++y) {
     convert(2 * y, cb.upper, cr.upper);
     if (2 * y + 1 < picture.height) {
       convert(2 * y + 1, cb.lower, cr.lower);

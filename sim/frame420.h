@@ -11,6 +11,9 @@ namespace pac::sim {
 // size.
 void frame420_from_rgb(ConstRgbView picture, Frame420& frame, Isa isa = best_isa());
 
+// The same of rows first..last - 1 of the picture; `first` is even, and `last` is even or the picture's height.
+void frame420_rows_from_rgb(ConstRgbView picture, int first, int last, Frame420& frame, Isa isa = best_isa());
+
 // Chroma by the triangle filter. `picture` must have the frame's size.
 void rgb_from_frame420(const Frame420& frame, RgbView picture, Isa isa = best_isa());
 

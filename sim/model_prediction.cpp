@@ -83,13 +83,13 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
 
 // Row y of this frame's maps, and where luma was. By short runs, so that reading depth and ids does not wait for
 // memory.
-void ModelPredictor::find_row(int y, PlaneView<const float> depth, PlaneView<const uint32_t> id, RowCarrier& luma) {
+void ModelPredictor::find_row(int y, const float* depth, const uint32_t* ids, RowCarrier& luma) {
   constexpr int kRun = 128;
   const WarpKernels& kernels = kernels_for(isa_)->warp;
-  const auto set = [&](int x, int n) { now_[0].set(x, y, n, depth.row(y) + x, id.row(y) + x, keys_, kernels); };
+  const auto set = [&](int x, int n) { now_[0].set(x, y, n, depth + x, ids + x, keys_, kernels); };
   luma.begin();
   if (!has_kept_) return set(0, width_);
-  for_each_way(flow_.ways(), flow_.way_of_id(), id.row(y), width_, [&](int first, int n, const Reprojection* way) {
+  for_each_way(flow_.ways(), flow_.way_of_id(), ids, width_, [&](int first, int n, const Reprojection* way) {
     if (way == nullptr) {
       set(first, n);
       luma.find_nowhere(first, n);
@@ -99,23 +99,22 @@ void ModelPredictor::find_row(int y, PlaneView<const float> depth, PlaneView<con
     for (int x = first; x < first + n; x += kRun) {
       const int run = std::min(first + n - x, kRun);
       set(x, run);
-      luma.find(x, run, row, x - first, depth.row(y) + x, now_[0].row(y) + x);
+      luma.find(x, run, row, x - first, depth + x, now_[0].row(y) + x);
     }
   });
 }
 
-void ModelPredictor::end_row(int y, PlaneView<const uint32_t> id) {
+void ModelPredictor::end_row(int y, const uint32_t* ids) {
   const WarpKernels& kernels = kernels_for(isa_)->warp;
   now_[0].end_row(y, kernels);
   if (y % 2 == 0) now_[1].set_half_row(y / 2, now_[0], kernels);
   const bool is_last = y == height_ - 1;
-  if (y % 8 == 4 || is_last) set_surfaces(y, id, 4, 8);
-  if (y % 16 == 8 || is_last) set_surfaces(y, id, 8, 16);
+  if (y % 8 == 4 || is_last) set_surfaces(y, ids, 4, 8);
+  if (y % 16 == 8 || is_last) set_surfaces(y, ids, 8, 16);
 }
 
 // Of columns `first`, `first` + `step`, ... and the last.
-void ModelPredictor::set_surfaces(int y, PlaneView<const uint32_t> id, int first, int step) {
-  const uint32_t* ids = id.row(y);
+void ModelPredictor::set_surfaces(int y, const uint32_t* ids, int first, int step) {
   uint32_t* to = surface_.row(y);
   const auto set = [&](int x) { to[x] = ids[x] < surfaces_.size() ? surfaces_[ids[x]] : 0; };
   for (int x = first; x < width_; x += step) set(x);
@@ -149,25 +148,40 @@ void ModelPredictor::add_row(int component, int y, const Frame420& base) {
 const Frame420& ModelPredictor::reference(const Frame420& base, PlaneView<const float> depth,
                                           PlaneView<const uint32_t> id, const raster::Camera& camera,
                                           std::span<const glm::mat4> objects) {
-  PAC_ASSERT(base.width() == width_ && base.height() == height_);
+  begin(camera, objects);
+  add_rows(base, depth, id, 0, height_);
+  return end();
+}
+
+void ModelPredictor::begin(const raster::Camera& camera, std::span<const glm::mat4> objects) {
   const Kernels& kernels = *kernels_for(isa_);
-  RowCarrier luma(before_[0], kernels), chroma(before_[1], kernels);
   if (has_kept_) flow_.prepare(camera, objects);
-  uint64_t found = 0;
-  // Row by row, so that depth, ids and what comes of them stay in the cache.
-  for (int y = 0; y < height_; ++y) {
-    find_row(y, depth, id, luma);
-    end_row(y, id);
-    carry_row(y, luma, chroma);
-    found += luma.found();
+  begun_.emplace(Begun{camera, objects, RowCarrier(before_[0], kernels), RowCarrier(before_[1], kernels)});
+}
+
+// Row by row, so that depth, ids and what comes of them stay in the cache.
+void ModelPredictor::add_rows(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id,
+                              int first, int last) {
+  PAC_ASSERT(begun_ && base.width() == width_ && base.height() == height_);
+  for (int y = first; y < last; ++y) {
+    const uint32_t* const ids = id.row(y - first);
+    find_row(y, depth.row(y - first), ids, begun_->luma);
+    end_row(y, ids);
+    carry_row(y, begun_->luma, begun_->chroma);
+    begun_->found += begun_->luma.found();
     add_row(0, y, base);
     if (y % 2 != 0) continue;
     add_row(1, y / 2, base);
     add_row(2, y / 2, base);
   }
-  for (SurfaceMap& map : now_) map.finish(kernels.warp);
-  stats_.carried_share = static_cast<double>(found) / (static_cast<double>(width_) * height_);
-  flow_.remember(camera, objects);
+}
+
+const Frame420& ModelPredictor::end() {
+  PAC_ASSERT(begun_);
+  for (SurfaceMap& map : now_) map.finish(kernels_for(isa_)->warp);
+  stats_.carried_share = static_cast<double>(begun_->found) / (static_cast<double>(width_) * height_);
+  flow_.remember(begun_->camera, begun_->objects);
+  begun_.reset();
   return reference_;
 }
 

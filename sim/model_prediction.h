@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,13 @@ class ModelPredictor {
   const Frame420& reference(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id,
                             const raster::Camera& camera, std::span<const glm::mat4> objects = {});
 
+  // The same by rows, for who has them as they are drawn: begin(), then rows from the top, first..last - 1 at a time
+  // and an even number but for the last ones, of a base whose rows these are, and depth and ids whose row 0 is `first`;
+  // then end(). `objects` are read until then. A frame that is not ended was not asked for.
+  void begin(const raster::Camera& camera, std::span<const glm::mat4> objects = {});
+  void add_rows(const Frame420& base, PlaneView<const float> depth, PlaneView<const uint32_t> id, int first, int last);
+  const Frame420& end();
+
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
   void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr);
 
@@ -63,9 +71,9 @@ class ModelPredictor {
   const PredictionStats& stats() const { return stats_; }
 
  private:
-  void find_row(int y, PlaneView<const float> depth, PlaneView<const uint32_t> id, RowCarrier& luma);
-  void end_row(int y, PlaneView<const uint32_t> id);
-  void set_surfaces(int y, PlaneView<const uint32_t> id, int first, int step);
+  void find_row(int y, const float* depth, const uint32_t* ids, RowCarrier& luma);
+  void end_row(int y, const uint32_t* ids);
+  void set_surfaces(int y, const uint32_t* ids, int first, int step);
   void carry_row(int y, RowCarrier& luma, RowCarrier& chroma);
   void add_row(int component, int y, const Frame420& base);
 
@@ -80,6 +88,15 @@ class ModelPredictor {
   Image<int16_t, 1> carried_[3];  // to the frame whose reference was asked for last
   Frame420 reference_;
   PredictionStats stats_;
+
+  // Of the frame that was begun.
+  struct Begun {
+    raster::Camera camera;
+    std::span<const glm::mat4> objects;
+    RowCarrier luma, chroma;
+    uint64_t found = 0;
+  };
+  std::optional<Begun> begun_;
 };
 
 }  // namespace pac::sim

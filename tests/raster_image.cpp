@@ -1,6 +1,7 @@
 // Whole pictures: the same bits from every instruction set, thread count, compiler and optimization level.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -187,6 +188,38 @@ TEST_CASE("H, L and D in one traversal equal two renderings and their difference
       CHECK(hash_pixels(depth.view()) == hash_pixels(depth2.view()));
       for (int y = 0; y < kHeight; ++y)
         for (int i = 0; i < 3 * kWidth; ++i) REQUIRE(d.row(y)[i] == 127 + (h.row(y)[i] - l.row(y)[i]) / 2);
+    }
+}
+
+TEST_CASE("bands, as they are drawn, hold the rows of the whole picture") {
+  const Scene scene = test_scenes::room();
+  constexpr int kWidth = 75, kHeight = 2 * kBandRows + 9;
+  const Camera camera = test_scenes::room_camera();
+  for (const int threads : {1, 3})
+    for (const int samples : {1, 16}) {
+      const RenderQuality wanted = quality(Shading::gouraud, samples == 1, samples, true, samples == 1 ? 0 : 1);
+      auto renderer = Renderer::create(kWidth, kHeight, {.threads = threads});
+      REQUIRE(renderer.ok());
+      RgbImage color(kWidth, kHeight), band_color(kWidth, kHeight);
+      DepthImage depth(kWidth, kHeight), band_depth(kWidth, kBandRows);
+      IdImage id(kWidth, kHeight), band_id(kWidth, kBandRows);
+      REQUIRE(renderer->render(scene, camera, wanted, {color.view(), depth.view(), id.view()}).ok());
+      int next = 0;
+      bool equal = true;
+      const auto drawn = [&](int first, int last) {
+        equal = equal && first == next && last == std::min(first + kBandRows, kHeight);
+        next = last;
+        for (int y = first; y < last; ++y)
+          equal = equal && std::equal(color.row(y), color.row(y) + 3 * kWidth, band_color.row(y)) &&
+                  std::equal(depth.row(y), depth.row(y) + kWidth, band_depth.row(y - first)) &&
+                  std::equal(id.row(y), id.row(y) + kWidth, band_id.row(y - first));
+      };
+      const RenderTargets bands{band_color.view(), band_depth.view(), band_id.view()};
+      REQUIRE(renderer->render_bands(scene, camera, wanted, bands, drawn).ok());
+      CHECK(equal);
+      CHECK(next == kHeight);
+      const RenderTargets whole{band_color.view(), depth.view(), id.view()};
+      CHECK(!renderer->render_bands(scene, camera, wanted, whole, drawn).ok());
     }
 }
 

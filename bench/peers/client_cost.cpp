@@ -46,8 +46,8 @@ class StagedClient {
         decoder_(decoder_options(), best_isa()),
         low_(message.width, message.height),
         shown_(message.width, message.height),
-        depth_(message.width, message.height),
-        id_(message.width, message.height),
+        depth_(message.width, raster::kBandRows),
+        id_(message.width, raster::kBandRows),
         base_(message.width, message.height) {}
   StagedClient(const StagedClient&) = delete;
   StagedClient& operator=(const StagedClient&) = delete;
@@ -63,15 +63,24 @@ class StagedClient {
       last = now;
     };
     check(sim::move_objects(packet.objects, model_), "objects");
-    check(renderer_.render(model_, packet.camera, message_.low, {low_.view(), depth_.view(), id_.view()}), "L");
-    done(kDraw);
-    hash_ ^= sim::image_hash(low_.view());
-    done(kHash);
-    sim::frame420_from_rgb(low_.view(), base_);
-    done(kToYcc);
     const bool is_key = (packet.difference[0] & 1) != 0, is_packed = (packet.difference[0] & 16) != 0;
     if (is_key) predictor_.forget();
-    reference_ = &predictor_.reference(base_, depth_.view(), id_.view(), packet.camera, packet.objects);
+    predictor_.begin(packet.camera, packet.objects);
+    sim::ImageHash hash(low_.width(), low_.height());
+    const raster::RenderTargets targets{low_.view(), depth_.view(), id_.view()};
+    const auto use_rows = [&](int first_row, int last_row) {
+      done(kDraw);
+      for (int y = first_row; y < last_row; ++y) hash.add_row(low_.row(y));
+      done(kHash);
+      sim::frame420_rows_from_rgb(low_.view(), first_row, last_row, base_);
+      done(kToYcc);
+      predictor_.add_rows(base_, depth_.view(), id_.view(), first_row, last_row);
+      done(kPredict);
+    };
+    check(renderer_.render_bands(model_, packet.camera, message_.low, targets, use_rows), "L");
+    done(kDraw);
+    hash_ ^= hash.finish();
+    reference_ = &predictor_.end();
     done(kPredict);
     std::span<const uint8_t> picture = packet.difference.subspan(1);
     if (is_packed) {
