@@ -7,13 +7,11 @@ namespace pac::raster {
 
 void TilePainter::paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets,
                              int first_sample) {
-  grid_ = {static_cast<int>(offsets.size()), {}, {}, 255, 0, whole_, near_z_, far_z_, grid_ids_, grid_depth_};
+  grid_ = {static_cast<int>(offsets.size()), {}, {}, whole_, near_z_, far_z_, grid_ids_, grid_depth_};
   for (size_t s = 0; s < kGridSamples; ++s) {
     const SampleOffset offset = offsets[s % offsets.size()];
     grid_.x[s] = offset.x;
     grid_.y[s] = offset.y;
-    grid_.first_offset = std::min({grid_.first_offset, int32_t{offset.x}, int32_t{offset.y}});
-    grid_.last_offset = std::max({grid_.last_offset, int32_t{offset.x}, int32_t{offset.y}});
   }
   const SamplePosition corner{area.x * 256, area.y * 256};
   input.kernels->tile.rasterize_grid(triangles_.data(), static_cast<uint32_t>(triangles_.size()), corner, grid_);

@@ -63,7 +63,7 @@ struct GridTile {
   SampleGrid grid;
 
   explicit GridTile(std::span<const SampleOffset> pattern) {
-    grid = {static_cast<int>(pattern.size()), {}, {}, 0, 255, whole, near_z, far_z, ids, depth};
+    grid = {static_cast<int>(pattern.size()), {}, {}, whole, near_z, far_z, ids, depth};
     for (size_t s = 0; s < kGridSamples; ++s) {
       grid.x[s] = pattern[s % pattern.size()].x;
       grid.y[s] = pattern[s % pattern.size()].y;

@@ -109,6 +109,17 @@ inline I8 smaller(I8 a, I8 b) {
 inline I8 larger(I8 a, I8 b) {
   return {_mm256_max_epi32(a.v, b.v)};
 }
+// Of all lanes.
+inline int32_t least_of(I8 a) {
+  __m128i m = _mm_min_epi32(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
+  m = _mm_min_epi32(m, _mm_shuffle_epi32(m, 0x4E));
+  return _mm_cvtsi128_si32(_mm_min_epi32(m, _mm_shuffle_epi32(m, 0xB1)));
+}
+inline int32_t greatest_of(I8 a) {
+  __m128i m = _mm_max_epi32(_mm256_castsi256_si128(a.v), _mm256_extracti128_si256(a.v, 1));
+  m = _mm_max_epi32(m, _mm_shuffle_epi32(m, 0x4E));
+  return _mm_cvtsi128_si32(_mm_max_epi32(m, _mm_shuffle_epi32(m, 0xB1)));
+}
 inline M8 operator<(F8 a, F8 b) {
   return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)};
 }

@@ -73,7 +73,6 @@ constexpr uint32_t kSplitPixel = UINT32_MAX;  // in `whole`: see ids and depth
 struct SampleGrid {
   int n;                                     // 4 or 16 samples in use
   int32_t x[kGridSamples], y[kGridSamples];  // their offsets inside the pixel, 0..255; beyond n: any such
-  int32_t first_offset, last_offset;         // the least and the greatest offset of either axis
   uint32_t* whole;                           // kTileSize^2: 0 = background, else 1 + index of the triangle
   float *near_z, *far_z;                     // kTileSize^2: every depth of the pixel lies between them
   uint32_t* ids;                             // kTileSize^2 * kGridSamples, sample after sample

@@ -115,6 +115,13 @@ inline I8 smaller(I8 a, I8 b) {
 inline I8 larger(I8 a, I8 b) {
   return {vmaxq_s32(a.lo, b.lo), vmaxq_s32(a.hi, b.hi)};
 }
+// Of all lanes.
+inline int32_t least_of(I8 a) {
+  return vminvq_s32(vminq_s32(a.lo, a.hi));
+}
+inline int32_t greatest_of(I8 a) {
+  return vmaxvq_s32(vmaxq_s32(a.lo, a.hi));
+}
 inline M8 operator<(F8 a, F8 b) {
   return {vcltq_f32(a.lo, b.lo), vcltq_f32(a.hi, b.hi)};
 }

@@ -119,6 +119,17 @@ inline I8 smaller(I8 a, I8 b) {
 inline I8 larger(I8 a, I8 b) {
   return {_mm_max_epi32(a.lo, b.lo), _mm_max_epi32(a.hi, b.hi)};
 }
+// Of all lanes.
+inline int32_t least_of(I8 a) {
+  __m128i m = _mm_min_epi32(a.lo, a.hi);
+  m = _mm_min_epi32(m, _mm_shuffle_epi32(m, 0x4E));
+  return _mm_cvtsi128_si32(_mm_min_epi32(m, _mm_shuffle_epi32(m, 0xB1)));
+}
+inline int32_t greatest_of(I8 a) {
+  __m128i m = _mm_max_epi32(a.lo, a.hi);
+  m = _mm_max_epi32(m, _mm_shuffle_epi32(m, 0x4E));
+  return _mm_cvtsi128_si32(_mm_max_epi32(m, _mm_shuffle_epi32(m, 0xB1)));
+}
 inline M8 operator<(F8 a, F8 b) {
   return {_mm_cmplt_ps(a.lo, b.lo), _mm_cmplt_ps(a.hi, b.hi)};
 }
