@@ -142,10 +142,8 @@ bool Decoder::State::choose_references(const PictureHeader& header, Planes& forw
       const Frame420* given = options.reference(options.reference_context, header, last);
       if (given != nullptr) {
         PAC_ASSERT(given->width() == sequence.width && given->height() == sequence.height);
-        const int width = 16 * macroblock_columns(sequence.width), height = 16 * macroblock_rows(sequence.height);
-        if (replaced.width() != width || replaced.height() != height) replaced = Frame420(width, height);
-        forward = Planes::of(replaced);
-        fill_planes(view_of(*given), forward);
+        forward = whole_macroblocks(*given, replaced);
+        context.skipped = kCopied;
         return true;
       }
     }
@@ -249,6 +247,7 @@ void Decoder::State::deliver(Picture& picture) {
   output.header = picture.header;
   output.byte_offset = picture.byte_offset;
   output.concealed_macroblocks = picture.concealed;
+  output.macroblocks = {};
   has_output = true;
 }
 
@@ -269,6 +268,7 @@ Result<void> Decoder::State::complete_picture() {
   n_references = std::min(n_references + 1, 2);
   if (options.low_delay) {
     deliver(references[1]);
+    if (context.skipped == kCopied) output.macroblocks = last_covered;
     return {};
   }
   if (waits_for_output) deliver(references[0]);

@@ -219,7 +219,11 @@ struct DecodedPicture {
   PictureHeader header;
   uint64_t byte_offset = 0;       // of the picture_start_code
   int concealed_macroblocks = 0;  // copied from the reference because the stream lacks them
+  // Of a picture that DecoderOptions::reference predicted, delivered at once: a byte a macroblock, row by row,
+  // kCopiedMacroblock where it shows what that frame shows there. Valid as long as `view`; else empty.
+  std::span<const uint8_t> macroblocks;
 };
+constexpr uint8_t kCopiedMacroblock = 3;
 
 // What was wrong with a stream that was decoded all the same.
 struct ErrorReport {
@@ -234,7 +238,7 @@ struct DecoderOptions {
   bool strict = false;     // stop at the first violation instead of concealing
   bool low_delay = false;  // deliver I and P pictures at once: for streams without B pictures
   // Called before each P picture: what predicts it instead of `last`, the latest reference picture; null: `last`. The
-  // frame has the sequence's size and need only live until the next call of the decoder.
+  // frame has the sequence's size and lives until the picture is delivered.
   const Frame420* (*reference)(void* context, const PictureHeader& header, const FrameView& last) = nullptr;
   void* reference_context = nullptr;
 };

@@ -237,7 +237,7 @@ void SliceReader::give_up_macroblock() {
   kept_before_ = nullptr;
   if (address_ < 0) return;
   uint8_t& covered = covered_[address_];
-  if (covered == kKept) covered = kDecoded;
+  if (covered == kKept || covered == kCopied) covered = kDecoded;
 }
 
 // At most 17 bits, which are in the window.

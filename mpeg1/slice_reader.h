@@ -21,8 +21,9 @@ struct Dequantizer {
 };
 void make_dequantizer(const QuantizerMatrix& matrix, bool is_intra, Dequantizer& dequantizer);
 
-// How a macroblock of a picture came about. `kept`: a copy of what the picture's forward reference shows there.
-enum Coverage : uint8_t { kMissing = 0, kDecoded = 1, kKept = 2 };
+// How a macroblock of a picture came about. kept, copied: a copy of what the picture's forward reference shows there,
+// the last reference picture or a caller's.
+enum Coverage : uint8_t { kMissing = 0, kDecoded = 1, kKept = 2, kCopied = kCopiedMacroblock };
 
 // What all slices of a picture share. `covered` has a Coverage a macroblock.
 //
@@ -37,7 +38,7 @@ struct PictureContext {
   const Dequantizer* non_intra = nullptr;
   std::vector<uint8_t>* covered = nullptr;
   const uint8_t* kept_before = nullptr;
-  Coverage skipped = kDecoded;  // what a skipped macroblock of a P picture is: kKept if its reference is the last one
+  Coverage skipped = kDecoded;  // what a skipped macroblock of a P picture is
 };
 
 // Reconstructs the macroblocks of slices.

@@ -126,7 +126,7 @@ Result<void> AssistedDecoder::end(ConstRgbView low, RgbView shown) {
   if (picture == nullptr) return s.start_again({Error::truncated, bytes.size(), "no picture in the video frame"});
   if (picture->view.width() != s.width || picture->view.height() != s.height)
     return s.start_again({Error::corrupt, 1, "pictures have another size than the session"});
-  s.shared.keep(picture->view, s.reference != nullptr);
+  s.shared.keep(picture->view, s.reference != nullptr, picture->macroblocks);
   s.shared.composite(low, shown);
   s.sequence = *s.decoder.sequence();
   const auto more = s.decoder.next();  // it would come out in place of the next frame's

@@ -72,8 +72,8 @@ void AssistedState::frame420_rows_of(ConstRgbView picture, int first, int last, 
   frame420_rows_from_rgb(codes_.view(), first, last, frame, isa_);
 }
 
-void AssistedState::keep(const mpeg1::FrameView& coded, bool uses_predictor) {
-  if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr);
+void AssistedState::keep(const mpeg1::FrameView& coded, bool uses_predictor, std::span<const uint8_t> macroblocks) {
+  if (uses_predictor) predictor_.keep(coded.y, coded.cb, coded.cr, macroblocks);
   if (!is_full_) coded_ = mpeg1::copy_of(coded);
 }
 

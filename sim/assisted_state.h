@@ -41,7 +41,7 @@ class AssistedState {
   void frame420_of(ConstRgbView picture, Frame420& frame);
 
   // What the codec made of it.
-  void keep(const mpeg1::FrameView& coded, bool uses_predictor);
+  void keep(const mpeg1::FrameView& coded, bool uses_predictor, std::span<const uint8_t> macroblocks = {});
 
   void composite(ConstRgbView low, RgbView shown) const;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/kernels/kernels.h"
+#include "mpeg1/mpeg1.h"
 
 namespace pac::sim {
 
@@ -78,7 +79,7 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
   kept_[1] = BorderedPlane(half_width, half_height);
   kept_[2] = BorderedPlane(half_width, half_height);
   for (int component = 0; component < 3; ++component)
-    carried_[component] = Image<int16_t, 1>(kept_[component].width(), kept_[component].height());
+    carried_[component] = BorderedPlane(kept_[component].width(), kept_[component].height());
 }
 
 // Row y of this frame's maps, and where luma was. By short runs, so that reading depth and ids does not wait for
@@ -185,32 +186,47 @@ const Frame420& ModelPredictor::end() {
   return reference_;
 }
 
-void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr) {
-  constexpr int16_t kLargest = 255 << kCarriedBits;
+void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr,
+                          std::span<const uint8_t> macroblocks) {
   const PlaneView<const uint8_t> coded[3] = {y, cb, cr};
+  const int columns = (width_ + 15) / 16, rows = (height_ + 15) / 16;
+  PAC_ASSERT(macroblocks.empty() || macroblocks.size() == static_cast<size_t>(columns) * static_cast<size_t>(rows));
   for (int component = 0; component < 3; ++component) {
-    BorderedPlane& kept = kept_[component];
-    const int width = kept.width();
-    for (int row = 0; row < kept.height(); ++row) {
-      const uint8_t* from = coded[component].row(row);
-      const uint8_t* minus = plane(reference_, component).row(row);
-      const int16_t* carried = carried_[component].row(row);
-      int16_t* to = kept.row(row);
-      for (int x = 0; x < width; ++x) {
-        // In 16 bits: beyond +-2^14 no picture brings it back within +-kLargest.
-        const auto bounded = std::clamp<int16_t>(carried[x], -0x4000, 0x4000);
-        const auto sum = static_cast<int16_t>(bounded + (from[x] - minus[x]) * (1 << kCarriedBits));
-        to[x] = std::clamp<int16_t>(sum, -kLargest, kLargest);
+    const int size = component == 0 ? 16 : 8;
+    std::swap(kept_[component], carried_[component]);
+    for (int row = 0; row < rows; ++row) {
+      const auto is_copied = [&](int column) {
+        return !macroblocks.empty() &&
+               macroblocks[static_cast<size_t>(row * columns + column)] == mpeg1::kCopiedMacroblock;
+      };
+      for (int first = 0, end = 0; first < columns; first = end) {
+        for (end = first + 1; end < columns && is_copied(end) == is_copied(first);) ++end;
+        if (is_copied(first)) continue;
+        const BorderedPlane& plane = kept_[component];
+        keep_part(component, coded[component], size * first, size * row,
+                  std::min(size * (end - first), plane.width() - size * first),
+                  std::min(size, plane.height() - size * row));
       }
     }
-    kept.extend();
+    kept_[component].extend();
   }
   std::swap(now_, before_);
   has_kept_ = true;
 }
 
+// What was carried becomes what is kept, in a part of the plane.
+void ModelPredictor::keep_part(int component, PlaneView<const uint8_t> coded, int x, int y, int width, int height) {
+  for (int row = y; row < y + height; ++row) {
+    const uint8_t *const from = coded.row(row) + x, *const minus = plane(reference_, component).row(row) + x;
+    int16_t* const to = kept_[component].row(row) + x;
+    for (int i = 0; i < width; ++i) {
+      const auto sum = static_cast<int16_t>(to[i] + (from[i] - minus[i]) * (1 << kCarriedBits));
+      to[i] = std::clamp<int16_t>(sum, -kLargestCarried, kLargestCarried);
+    }
+  }
+}
+
 void ModelPredictor::add(const Frame420& before, const Frame420& after) {
-  constexpr int kLargest = 255 << kCarriedBits;
   for (int component = 0; component < 3; ++component) {
     BorderedPlane& kept = kept_[component];
     for (int row = 0; row < kept.height(); ++row) {
@@ -218,7 +234,7 @@ void ModelPredictor::add(const Frame420& before, const Frame420& after) {
       int16_t* sum = kept.row(row);
       for (int x = 0; x < kept.width(); ++x) {
         const int changed = sum[x] + (to[x] - from[x]) * (1 << kCarriedBits);
-        sum[x] = static_cast<int16_t>(std::clamp(changed, -kLargest, kLargest));
+        sum[x] = static_cast<int16_t>(std::clamp<int>(changed, -kLargestCarried, kLargestCarried));
       }
     }
     kept.extend();

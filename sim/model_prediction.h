@@ -53,7 +53,10 @@ class ModelPredictor {
   const Frame420& end();
 
   // What the codec made of the frame whose reference was asked for last: kept as the difference to its base.
-  void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr);
+  // `macroblocks`: which of them, row by row, are mpeg1::kCopiedMacroblock, the reference itself; empty: any may
+  // differ.
+  void keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> cb, PlaneView<const uint8_t> cr,
+            std::span<const uint8_t> macroblocks = {});
 
   // What was kept changes by the difference of two pictures of the same frame: more was decoded of it.
   void add(const Frame420& before, const Frame420& after);
@@ -76,6 +79,7 @@ class ModelPredictor {
   void set_surfaces(int y, const uint32_t* ids, int first, int step);
   void carry_row(int y, RowCarrier& luma, RowCarrier& chroma);
   void add_row(int component, int y, const Frame420& base);
+  void keep_part(int component, PlaneView<const uint8_t> coded, int x, int y, int width, int height);
 
   int width_, height_;
   std::vector<uint32_t> surfaces_, keys_;  // by id; keys_: empty where nothing moves
@@ -85,7 +89,7 @@ class ModelPredictor {
   SurfaceMap now_[2], before_[2];  // luma, chroma
   IdImage surface_;
   BorderedPlane kept_[3];
-  Image<int16_t, 1> carried_[3];  // to the frame whose reference was asked for last
+  BorderedPlane carried_[3];  // to the frame whose reference was asked for last
   Frame420 reference_;
   PredictionStats stats_;
 

@@ -129,7 +129,9 @@ size_t filter_edges(const int16_t* plane, ptrdiff_t stride, const KeyMap& map, c
       const __m256i v = filter_down(rows, load_two(taps.of_phase(a.phase_y), taps.of_phase(b.phase_y)));
       const __m256i sums = _mm256_madd_epi16(v, load_two(taps.of_phase(a.phase_x), taps.of_phase(b.phase_x)));
       const __m256i pairs = _mm256_hadd_epi32(sums, sums), all = _mm256_hadd_epi32(pairs, pairs);
-      const __m256i done = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(512)), 10);
+      const __m256i unbounded = _mm256_srai_epi32(_mm256_add_epi32(all, _mm256_set1_epi32(512)), 10);
+      const __m256i done = _mm256_min_epi32(_mm256_max_epi32(unbounded, _mm256_set1_epi32(-kLargestCarried)),
+                                            _mm256_set1_epi32(kLargestCarried));
       out[column_a] = means.is_shown[0] ? static_cast<int16_t>(_mm256_extract_epi32(done, 0)) : int16_t{0};
       lost += !means.is_shown[0];
       if (i + 1 == n_edges) continue;

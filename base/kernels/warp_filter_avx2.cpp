@@ -160,7 +160,8 @@ struct Results {
 };
 
 template <int kPlanes>
-inline Results<kPlanes> filter_eight(const Planes<kPlanes>& planes, Taps taps, const int32_t* x, const int32_t* y) {
+[[gnu::always_inline]] inline Results<kPlanes> filter_eight(const Planes<kPlanes>& planes, Taps taps, const int32_t* x,
+                                                            const int32_t* y) {
   Results<kPlanes> results;
   const ptrdiff_t stride = planes.stride;
   const __m256i heights = load(y), columns = _mm256_srai_epi32(load(x), 6), lines = _mm256_srai_epi32(heights, 6);
@@ -224,13 +225,17 @@ inline Results<kPlanes> filter_group(const Planes<kPlanes>& planes, Taps taps, c
   return filter_eight(planes, taps, x, y);
 }
 
+inline __m128i limited(__m128i carried) {
+  return _mm_min_epi16(_mm_max_epi16(carried, _mm_set1_epi16(-kLargestCarried)), _mm_set1_epi16(kLargestCarried));
+}
+
 template <int kPlanes>
 inline void filter_planes(const Planes<kPlanes>& planes, Taps taps, const int32_t* x_64, const int32_t* y_64,
                           const uint8_t* state, size_t n, int16_t* const out[kPlanes]) {
   size_t i = 0;
   for (; i + 8 <= n; i += 8) {
     const Results<kPlanes> results = filter_group(planes, taps, x_64 + i, y_64 + i, state + i);
-    for (int k = 0; k < kPlanes; ++k) _mm_storeu_si128(reinterpret_cast<__m128i*>(out[k] + i), results.of[k]);
+    for (int k = 0; k < kPlanes; ++k) _mm_storeu_si128(reinterpret_cast<__m128i*>(out[k] + i), limited(results.of[k]));
   }
   if (i == n) return;
   int32_t last_x[8] = {}, last_y[8] = {};
@@ -239,7 +244,10 @@ inline void filter_planes(const Planes<kPlanes>& planes, Taps taps, const int32_
   __builtin_memcpy(last_y, y_64 + i, (n - i) * 4);
   __builtin_memcpy(last_state, state + i, n - i);
   const Results<kPlanes> results = filter_group(planes, taps, last_x, last_y, last_state);
-  for (int k = 0; k < kPlanes; ++k) __builtin_memcpy(out[k] + i, &results.of[k], (n - i) * sizeof(int16_t));
+  for (int k = 0; k < kPlanes; ++k) {
+    const __m128i last = limited(results.of[k]);
+    __builtin_memcpy(out[k] + i, &last, (n - i) * sizeof(int16_t));
+  }
 }
 
 void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* table, const int32_t* x_64,

@@ -19,6 +19,7 @@ constexpr int kWarpPhases = 64;    // a pixel
 constexpr int kWarpTapStride = 8;  // coefficients of one phase in the table; the last two are 0
 constexpr int32_t kWarpNowhere = INT32_MIN;
 constexpr int kCarriedBits = 5;  // of carried differences below the point
+constexpr int16_t kLargestCarried = 255 << kCarriedBits;
 
 // What a pixel shows, in 32 bits: bits 16..31 what moves it (modulo 2^16), bits 0..13 its depth (surface_keys_row), and
 // in maps of the frame before bit 14: the taps of the filter around a place between this pixel and the next ones all
@@ -88,6 +89,7 @@ struct WarpKernels {
   // 1020, and samples from column floor(x_64 / 64) - 2 and row floor(y_64 / 64) - 2 on
   //   v[j]   = (sum over k of taps[phase_y][k] * sample(j, k) + 128) >> 8     fits 16 bits
   //   out[i] = (sum over j of taps[phase_x][j] * v[j] + 512) >> 10            and so does this
+  // limited to +-kLargestCarried.
   // Reads up to 16 samples of each of the 6 rows.
   void (*filter_points)(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,
                         const int32_t* y_64, const uint8_t* state, size_t n, int16_t* out);

@@ -75,7 +75,9 @@ inline int16_t filter_point(const Rows& rows, const int16_t* taps_x, const int16
   const int16x8_t x = vld1q_s16(taps_x);
   const int32x4_t sums = vmlal_s16(vmull_s16(vmovn_s32(vshrq_n_s32(low, 8)), vget_low_s16(x)),
                                    vmovn_s32(vshrq_n_s32(high, 8)), vget_high_s16(x));
-  return static_cast<int16_t>((vaddvq_s32(sums) + 512) >> 10);
+  const int32_t done = (vaddvq_s32(sums) + 512) >> 10;
+  const int32_t bounded = done < -kLargestCarried ? -kLargestCarried : done;
+  return static_cast<int16_t>(bounded > kLargestCarried ? kLargestCarried : bounded);
 }
 
 void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,

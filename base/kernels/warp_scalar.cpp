@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -124,7 +125,7 @@ int16_t filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* taps_x,
     for (int k = 0; k < kWarpTaps; ++k) v += taps_y[k] * at[k * stride + j];
     sum += taps_x[j] * (v >> 8);
   }
-  return static_cast<int16_t>(sum >> 10);
+  return static_cast<int16_t>(std::clamp<int32_t>(sum >> 10, -kLargestCarried, kLargestCarried));
 }
 
 void filter_points(const int16_t* plane, ptrdiff_t stride, const int16_t* taps, const int32_t* x_64,

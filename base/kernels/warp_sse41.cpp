@@ -78,7 +78,8 @@ inline __m128i filter_point(const int16_t* at, ptrdiff_t stride, const int16_t* 
 }
 
 inline __m128i finished(__m128i sums) {
-  return _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(512)), 10);
+  const __m128i done = _mm_srai_epi32(_mm_add_epi32(sums, _mm_set1_epi32(512)), 10);
+  return _mm_min_epi32(_mm_max_epi32(done, _mm_set1_epi32(-kLargestCarried)), _mm_set1_epi32(kLargestCarried));
 }
 
 inline int16_t sum_of(__m128i partial) {

@@ -95,7 +95,7 @@ class StagedClient {
     decoder_.end_picture();
     const mpeg1::DecodedPicture* decoded = need(decoder_.next(), "decode");
     done(kDecode);
-    predictor_.keep(decoded->view.y, decoded->view.cb, decoded->view.cr);
+    predictor_.keep(decoded->view.y, decoded->view.cb, decoded->view.cr, decoded->macroblocks);
     done(kKeep);
     sim::composite_signed(low_.view(), predictor_.difference(0), predictor_.difference(1), predictor_.difference(2),
                           shown_.view());
