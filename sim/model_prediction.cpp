@@ -68,7 +68,7 @@ ModelPredictor::ModelPredictor(int width, int height, std::vector<uint32_t> surf
       keys_(keys_of(movers)),
       isa_(isa),
       flow_(width, height, sample_x, sample_y, std::move(movers), isa),
-      surface_(width, height),
+      surface_((width + 15) / 16 * 4, (height + 15) / 16 * 4),
       reference_(width, height) {
   const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
   for (SurfaceMap* map : {now_, before_}) {
@@ -109,17 +109,22 @@ void ModelPredictor::end_row(int y, const uint32_t* ids) {
   const WarpKernels& kernels = kernels_for(isa_)->warp;
   now_[0].end_row(y, kernels);
   if (y % 2 == 0) now_[1].set_half_row(y / 2, now_[0], kernels);
-  const bool is_last = y == height_ - 1;
-  if (y % 8 == 4 || is_last) set_surfaces(y, ids, 4, 8);
-  if (y % 16 == 8 || is_last) set_surfaces(y, ids, 8, 16);
+  for (const int step : {8, 16}) set_surfaces(y, ids, step);
 }
 
-// Of columns `first`, `first` + `step`, ... and the last.
-void ModelPredictor::set_surfaces(int y, const uint32_t* ids, int first, int step) {
-  uint32_t* to = surface_.row(y);
-  const auto set = [&](int x) { to[x] = ids[x] < surfaces_.size() ? surfaces_[ids[x]] : 0; };
-  for (int x = first; x < width_; x += step) set(x);
-  set(width_ - 1);
+// In the middle of squares of `step` pixels, where row y is the one that counts for them.
+void ModelPredictor::set_surfaces(int y, const uint32_t* ids, int step) {
+  const int middle = step / 2, width = 4 * surface_.width(), height = 4 * surface_.height();
+  const auto set = [&](uint32_t* to) {
+    for (int x = middle; x < width; x += step) {
+      const uint32_t id = ids[std::min(x, width_ - 1)];
+      to[x / 4] = id < surfaces_.size() ? surfaces_[id] : 0;
+    }
+  };
+  if (y % step == middle) set(surface_.row(y / 4));
+  if (y < height_ - 1) return;
+  for (int below = y / step * step + middle; below < height; below += step)
+    if (below > y) set(surface_.row(below / 4));
 }
 
 // Row y of luma and, where it is even, what of chroma belongs to it.

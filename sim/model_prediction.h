@@ -62,7 +62,8 @@ class ModelPredictor {
   void add(const Frame420& before, const Frame420& after);
 
   // The surface that L shows in the frame whose reference was asked for last, in the middle of blocks (columns and rows
-  // 8 k + 4) and of macroblocks (16 k + 8), or where that is beyond it in the last column and row; until keep().
+  // 8 k + 4) and of macroblocks (16 k + 8), or where that is beyond it in the last column and row: at a quarter of such
+  // a column and row. Until keep().
   PlaneView<const uint32_t> surface() const { return surface_.view(); }
 
   // The kept difference: luma and chroma, in 1/32.
@@ -76,7 +77,7 @@ class ModelPredictor {
  private:
   void find_row(int y, const float* depth, const uint32_t* ids, RowCarrier& luma);
   void end_row(int y, const uint32_t* ids);
-  void set_surfaces(int y, const uint32_t* ids, int first, int step);
+  void set_surfaces(int y, const uint32_t* ids, int step);
   void carry_row(int y, RowCarrier& luma, RowCarrier& chroma);
   void add_row(int component, int y, const Frame420& base);
   void keep_part(int component, PlaneView<const uint8_t> coded, int x, int y, int width, int height);

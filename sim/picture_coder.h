@@ -203,10 +203,7 @@ class PictureCoder {
   uint32_t surface_at(int block) const {
     const int x = column_ * 16 + (block < 4 ? (block & 1) * 8 + 4 : 8);
     const int y = row_ * 16 + (block < 4 ? (block >> 1) * 8 + 4 : 8);
-    uint32_t surface = 0;
-    if (surface_.width > 0)
-      surface = surface_.row(std::min(y, surface_.height - 1))[std::min(x, surface_.width - 1)] % kSurfaces;
-    return surface;
+    return surface_.width > 0 ? *surface_.pixel(x / 4, y / 4) % kSurfaces : 0;
   }
   SurfaceMeans& surface_of(int block) { return learned_.surfaces[surface_at(block) * kPlanes + (block < 4 ? 0 : 1)]; }
 

@@ -27,8 +27,8 @@ class PicturePacker {
   PicturePacker& operator=(PicturePacker&&) noexcept;
 
   // The packed picture; empty where that would not be shorter, or where `mpeg1` is not one picture with or without
-  // headers of sequence and group as mpeg1::Encoder writes it. `surface`: per pixel of L which surface it shows
-  // (surfaces_of()), the same on both sides: it decides the size, not what comes out.
+  // headers of sequence and group as mpeg1::Encoder writes it. `surface`: which surfaces L shows, as
+  // ModelPredictor::surface() has them, or empty; the same on both sides: it decides the size, not what comes out.
   Bytes pack(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface);
   // The size pack() would give, or that of mpeg1; nothing is learned.
   uint64_t packed_size(std::span<const uint8_t> mpeg1, bool stands_alone, PlaneView<const uint32_t> surface);

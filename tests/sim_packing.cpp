@@ -58,9 +58,9 @@ std::vector<Bytes> coded_pictures(int count, double quantizer) {
 }
 
 IdImage stripes() {
-  IdImage surface(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) surface.row(y)[x] = static_cast<uint32_t>(x / 20 + 100 * (y / 30));
+  IdImage surface((kWidth + 15) / 16 * 4, (kHeight + 15) / 16 * 4);
+  for (int y = 0; y < surface.height(); ++y)
+    for (int x = 0; x < surface.width(); ++x) surface.row(y)[x] = static_cast<uint32_t>(x / 5 + 100 * (y / 7));
   return surface;
 }
 
