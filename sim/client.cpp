@@ -38,11 +38,11 @@ struct Client::State {
 
 namespace {
 
-Result<RgbImage> receive_jpeg(const FramePacket& packet, const RgbImage& low, const ClientOptions& options) {
+Result<void> receive_jpeg(const FramePacket& packet, const RgbImage& low, const ClientOptions& options,
+                          RgbView picture) {
   PAC_TRY(const RgbImage difference, jpeg::decode(packet.difference, options.limits, options.isa));
-  RgbImage picture(low.width(), low.height());
-  composite_image(low.view(), difference.view(), picture.view(), options.isa);
-  return picture;
+  composite_image(low.view(), difference.view(), picture, options.isa);
+  return {};
 }
 
 }  // namespace
@@ -154,6 +154,12 @@ uint32_t Client::frame_number() const {
 }
 
 Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
+  RgbImage picture;
+  PAC_CHECK(receive(bytes, picture));
+  return picture;
+}
+
+Result<void> Client::receive(std::span<const uint8_t> bytes, RgbImage& picture) {
   State& state = *state_;
   PAC_TRY(const FramePacket packet, state.packets.read(bytes));
   if (packet.has_model == state.resident)
@@ -166,9 +172,9 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
   state.frame_number = packet.frame;
   if ((packet.is_short ? static_cast<uint32_t>(hash) : hash) != packet.low_hash)
     return Failure{Error::corrupt, packet.is_short ? 3u : 96u, "low-quality rendering differs from the server's"};
-  if (packet.codec == Codec::jpeg) return receive_jpeg(packet, state.low, state.options);
+  if (picture.width() != state.width || picture.height() != state.height) picture = RgbImage(state.width, state.height);
+  if (packet.codec == Codec::jpeg) return receive_jpeg(packet, state.low, state.options, picture.view());
 
-  RgbImage picture(state.width, state.height);
   if (packet.codec == Codec::mpeg1) {
     PAC_CHECK(state.video->end(state.low.view(), picture.view()));
     state.exact = was_exact || state.video->last_was_key();
@@ -177,7 +183,7 @@ Result<RgbImage> Client::receive(std::span<const uint8_t> bytes) {
     state.exact = was_exact || stands_alone;
   }
   state.started = true;
-  return picture;
+  return {};
 }
 
 }  // namespace pac::sim

@@ -30,6 +30,9 @@ class Client {
   // as read_frame_packet; corrupt where the model or JPEG inside is, where the difference has another size, or where
   // this client's L is not the one that the server subtracted ("low-quality rendering differs from the server's").
   Result<RgbImage> receive(std::span<const uint8_t> packet);
+  // The same into a picture that is used again: it gets the session's size where it has another. What it shows where
+  // the packet fails is not specified.
+  Result<void> receive(std::span<const uint8_t> packet, RgbImage& picture);
 
   // The low-quality rendering of the last frame that got so far, and its frame number.
   const RgbImage& low() const;

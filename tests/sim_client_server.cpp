@@ -157,6 +157,19 @@ TEST_CASE("a client whose low-quality rendering differs says so and is ready for
   CHECK(client.receive(*good).ok());
 }
 
+TEST_CASE("a picture that is used again shows what a new one shows, whatever its size was") {
+  sim::Server server = make_server({false, "texture", false});
+  sim::Client fresh = make_client(server), again = make_client(server);
+  RgbImage picture(3, 200);
+  for (uint32_t number = 0; number < 3; ++number) {
+    const Bytes packet = send_frame(server, number);
+    const auto shown = fresh.receive(packet);
+    REQUIRE(shown.ok());
+    REQUIRE(again.receive(packet, picture).ok());
+    CHECK(equal(picture, *shown));
+  }
+}
+
 TEST_CASE("packet and session must agree about where the model is, and about the size of the picture") {
   sim::Server resident = make_server({false, "texture", false}), transmitted = make_server({false, "texture", true});
   sim::Client client = make_client(resident);
