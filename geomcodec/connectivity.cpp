@@ -38,7 +38,7 @@ enum GateSymbol : uint32_t { kNoFace = 6, kOtherSize = 7 };
 constexpr uint32_t kLowDegrees = 6;  // 0..4 and more
 constexpr uint32_t kGateContexts = (kMaxDegree + 1) * kLowDegrees * 2 * 2 * 2;
 constexpr uint32_t kCornerContexts = 3 * kLowDegrees * kLowDegrees * 2;
-constexpr size_t kWalkContexts = kGateContexts + kCornerContexts;
+static_assert(kGateContexts + kCornerContexts == kWalkContexts);
 
 inline uint32_t gate_context(uint32_t degree_a, uint32_t degree_b, bool between, bool border, bool triangle) {
   const uint32_t low = degree_b < kLowDegrees ? degree_b : kLowDegrees - 1;
@@ -257,11 +257,8 @@ Result<Topology> decode_walk(Coder& coder, const ConnectivityHeader& header, uin
   return walk.take();
 }
 
-}  // namespace
-
-CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
-                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool adaptively,
-                                      bool by_tables) {
+ConnectivityHeader header_of(std::span<const uint32_t> indices, std::span<const Face> faces,
+                             std::span<const uint8_t> degenerate, uint32_t n_vertices) {
   ConnectivityHeader header;
   std::vector<uint8_t> used(n_vertices);
   for (uint32_t f = 0; f < faces.size(); ++f) {
@@ -272,22 +269,39 @@ CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::sp
     for (uint32_t k = 0; k < face.count; ++k) used[indices[face.first + k]] = 1;
   }
   header.n_vertices = static_cast<uint32_t>(std::count(used.begin(), used.end(), uint8_t{1}));
+  return header;
+}
 
+}  // namespace
+
+CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
+                                      std::span<const uint8_t> degenerate, uint32_t n_vertices, bool adaptively,
+                                      bool by_tables, Expected expected) {
+  const ConnectivityHeader header = header_of(indices, faces, degenerate, n_vertices);
   WalkSource source(indices, faces, degenerate, n_vertices);
   CodedConnectivity coded;
   if (adaptively) coded.adaptive_bytes = encode_walk(RangeEncoder(), header, source, coded.topology);
   if (adaptively && by_tables) source.restart();
-  if (by_tables)
-    coded.table_bytes = encode_walk(TableEncoder(kWalkContexts, Expected::nothing), header, source, coded.topology);
+  if (by_tables) coded.table_bytes = encode_walk(TableEncoder(kWalkContexts, expected), header, source, coded.topology);
   coded.order = std::move(source.order);
   return coded;
 }
 
+std::vector<SymbolCounts> count_walk_symbols(std::span<const uint32_t> indices, std::span<const Face> faces,
+                                             uint32_t n_vertices) {
+  WalkSource source(indices, faces, {}, n_vertices);
+  TableEncoder coder(kWalkContexts, Expected::nothing);
+  const ConnectivityHeader header = header_of(indices, faces, {}, n_vertices);
+  Walk<TableEncoder> walk(coder, header, &source, header.n_corners);
+  PAC_ASSERT(walk.run());
+  return coder.counts();
+}
+
 Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header, bool by_tables,
-                                     uint64_t stream_bytes) {
+                                     Expected expected, uint64_t stream_bytes) {
   if (by_tables) {
     SymbolTables tables;
-    TableDecoder coder(bytes, kWalkContexts, Expected::nothing, tables);
+    TableDecoder coder(bytes, kWalkContexts, expected, tables);
     return decode_walk(coder, header, stream_bytes);
   }
   RangeDecoder coder(bytes);

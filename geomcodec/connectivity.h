@@ -10,6 +10,7 @@
 #include "base/mesh.h"
 #include "base/result.h"
 #include "geomcodec/range_coder.h"
+#include "geomcodec/table_coder.h"
 #include "geomcodec/topology.h"
 
 namespace pac::geomcodec {
@@ -23,7 +24,7 @@ struct WalkOrder {
 
 // Walks the faces of a mesh that is already checked, coding as it goes: adaptively, by tables or in both ways, the walk
 // being the same. What is not asked for is empty. degenerate: per face, whether it is left out (degenerate_faces.h);
-// empty if none is.
+// empty if none is. expected: of contexts that no table is told of, faces or nothing.
 struct CodedConnectivity {
   Topology topology;
   WalkOrder order;
@@ -31,7 +32,11 @@ struct CodedConnectivity {
 };
 CodedConnectivity encode_connectivity(std::span<const uint32_t> indices, std::span<const Face> faces,
                                       std::span<const uint8_t> degenerate, uint32_t n_vertices, bool adaptively,
-                                      bool by_tables);
+                                      bool by_tables, Expected expected);
+
+// How often each symbol occurs in each context of the walk by tables, for training: [context][symbol].
+std::vector<SymbolCounts> count_walk_symbols(std::span<const uint32_t> indices, std::span<const Face> faces,
+                                             uint32_t n_vertices);
 
 struct ConnectivityHeader {
   uint32_t n_vertices = 0, n_faces = 0, n_corners = 0;  // vertices: those that faces use
@@ -39,6 +44,6 @@ struct ConnectivityHeader {
 // Arrays grow as faces are read, from what a stream of so many bytes usually holds, never past the header's counts.
 // byte_offset of failures counts from bytes.data().
 Result<Topology> decode_connectivity(std::span<const uint8_t> bytes, const ConnectivityHeader& header, bool by_tables,
-                                     uint64_t stream_bytes);
+                                     Expected expected, uint64_t stream_bytes);
 
 }  // namespace pac::geomcodec

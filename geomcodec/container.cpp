@@ -22,29 +22,41 @@ enum Flag : uint8_t {
   kHasFaceValues = 128
 };
 
-enum Feature : uint8_t { kHasDegenerate = 1, kChooses = 2, kRanked = 4, kPartsBySize = 8, kExpectedTables = 16 };
+enum Feature : uint8_t {
+  kHasDegenerate = 1,
+  kChooses = 2,
+  kRanked = 4,
+  kPartsBySize = 8,
+  kExpectedTables = 16,
+  kExpectedFaces = 32
+};
 
 // Version 4 is there for tables: without any it would be version 3. Version 5 says how positions are coded that tables
 // do not code. Version 6 is there for degenerate faces, ranked points and parts that repeat by size, version 7
-// for expected tables; both tell all of it.
+// for expected tables, version 8 for those of faces; they tell all of it.
 void parse_tables(ByteReader& reader, uint8_t version, uint8_t& features, Header& header) {
   constexpr uint32_t kMayBe =
       1u << kConnectivity | 1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords;
   header.tables = reader.u8();
   if (version >= kVersionWithFeatures) {
     features = reader.u8();
-    constexpr uint8_t kOfBoth = kHasDegenerate | kRanked | kPartsBySize;
-    const uint8_t needed = version == kVersionWithFeatures ? kOfBoth : uint8_t{kExpectedTables};
-    if ((features & needed) == 0 || (features & ~(kOfBoth | needed | kChooses)) != 0)
+    constexpr uint8_t kOfVersion6 = kHasDegenerate | kRanked | kPartsBySize;
+    const uint8_t needed = version == kVersionWithFeatures       ? kOfVersion6
+                           : version == kVersionOfExpectedTables ? uint8_t{kExpectedTables}
+                                                                 : uint8_t{kExpectedFaces};
+    const uint8_t others = version == kVersionOfExpectedFaces ? kChooses | kExpectedTables : kChooses;
+    if ((features & needed) == 0 || (features & ~(kOfVersion6 | needed | others)) != 0)
       reader.fail(Error::corrupt, "features are unknown, or none that needs this version");
     header.chooses = (features & kChooses) != 0;
     header.ranked = (features & kRanked) != 0;
     header.parts_repeat_by_size = (features & kPartsBySize) != 0;
     header.expected_tables = (features & kExpectedTables) != 0;
+    header.expected_faces = (features & kExpectedFaces) != 0;
   }
   if ((header.tables == 0 && version == kVersionWithTables) ||
       (header.by_tables(kPositions) && (header.chooses || header.ranked || header.parts_repeat_by_size)) ||
-      (header.expected_tables && !header.may_expect_tables()) || (header.tables & ~kMayBe) != 0)
+      (header.expected_tables && !header.may_expect_tables()) ||
+      (header.expected_faces && !header.by_tables(kConnectivity)) || (header.tables & ~kMayBe) != 0)
     reader.fail(Error::corrupt, "no section or a wrong one is coded by tables");
 }
 
@@ -181,10 +193,10 @@ std::vector<uint8_t> write_stream(const Header& header, const std::array<std::ve
   out.push_back(flags);
   if (header.version() != kVersion) out.push_back(header.tables);
   if (header.version() >= kVersionWithFeatures)
-    out.push_back(static_cast<uint8_t>((header.n_degenerate > 0 ? kHasDegenerate : 0) |
-                                       (header.chooses ? kChooses : 0) | (header.ranked ? kRanked : 0) |
-                                       (header.parts_repeat_by_size ? kPartsBySize : 0) |
-                                       (header.expected_tables ? kExpectedTables : 0)));
+    out.push_back(static_cast<uint8_t>(
+        (header.n_degenerate > 0 ? kHasDegenerate : 0) | (header.chooses ? kChooses : 0) |
+        (header.ranked ? kRanked : 0) | (header.parts_repeat_by_size ? kPartsBySize : 0) |
+        (header.expected_tables ? kExpectedTables : 0) | (header.expected_faces ? kExpectedFaces : 0)));
   put_grid(out, header, flags);
   put_varint(out, header.n_used_vertices);
   put_varint(out, header.n_split_vertices);
@@ -205,7 +217,7 @@ Result<ParsedStream> parse_stream(std::span<const uint8_t> bytes) {
   for (const uint8_t expected : kMagic)
     if (reader.u8() != expected && reader.ok()) return Failure{Error::corrupt, 0, "not a PGC geometry stream"};
   const uint8_t version = reader.u8();
-  if ((version < kVersion || version > kVersionOfExpectedTables) && reader.ok())
+  if ((version < kVersion || version > kVersionOfExpectedFaces) && reader.ok())
     return Failure{Error::unsupported, 3, "version of the stream is unknown"};
   const uint8_t flags = reader.u8();
   if ((flags & kUnitGrid) != 0 && (flags & kOneStep) != 0)

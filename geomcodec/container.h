@@ -13,7 +13,7 @@
 namespace pac::geomcodec {
 
 inline constexpr uint8_t kVersion = 3, kVersionWithTables = 4, kVersionThatChooses = 5, kVersionWithFeatures = 6,
-                         kVersionOfExpectedTables = 7;
+                         kVersionOfExpectedTables = 7, kVersionOfExpectedFaces = 8;
 
 enum Section : uint32_t {
   kConnectivity,
@@ -54,11 +54,13 @@ struct Header {
   bool ranked = false;                // positions, not coded by tables: in the order of point_order.h
   bool parts_repeat_by_size = false;  // positions, not coded by tables: as Topology::parts_repeat_by_size
   bool expected_tables = false;       // in sections by tables but connectivity contexts have expected_tables.h's
+  bool expected_faces = false;        // in connectivity, by tables, likewise
 
   uint32_t n_vertices() const { return n_used_vertices + n_isolated_vertices; }
   uint32_t n_points() const { return n_used_vertices - n_split_vertices; }
   uint8_t version() const {
-    return expected_tables                                      ? kVersionOfExpectedTables
+    return expected_faces                                       ? kVersionOfExpectedFaces
+           : expected_tables                                    ? kVersionOfExpectedTables
            : n_degenerate > 0 || ranked || parts_repeat_by_size ? kVersionWithFeatures
            : chooses                                            ? kVersionThatChooses
            : tables != 0                                        ? kVersionWithTables
@@ -68,8 +70,9 @@ struct Header {
   bool may_expect_tables() const {
     return (tables & (1u << kPositions | 1u << kColors | 1u << kNormals | 1u << kTexcoords)) != 0;
   }
-  // What contexts of positions, colors, normals, texture have that no table is told of.
+  // What contexts of connectivity, positions, colors, normals, texture have that no table is told of.
   Expected expected_of(Section section) const {
+    if (section == kConnectivity) return expected_faces ? Expected::faces : Expected::nothing;
     if (!expected_tables) return Expected::nothing;
     return section == kPositions ? Expected::positions : section == kColors ? Expected::colors : Expected::others;
   }

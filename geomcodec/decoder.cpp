@@ -184,7 +184,7 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
     auto decoded = decode_connectivity(
         stream.section[kConnectivity],
         {header.n_points(), header.n_faces - header.n_degenerate, header.n_corners - 3 * header.n_degenerate},
-        header.by_tables(kConnectivity), bytes.size());
+        header.by_tables(kConnectivity), header.expected_of(kConnectivity), bytes.size());
     if (!decoded) return at(decoded.failure(), stream.section_offset(kConnectivity));
     points = std::move(*decoded);
     points.parts_repeat_by_size = header.parts_repeat_by_size;

@@ -47,7 +47,8 @@ std::vector<uint32_t> corners_in_order(const QuantizedMesh& mesh, const WalkOrde
 // What an encoder makes of the sections that tables may code. either: both, and keeps one of them.
 enum class Coding { adaptive, tables, either };
 
-Walked walk(const QuantizedMesh& mesh, Coding coding) {
+// expected: of the faces, by tables.
+Walked walk(const QuantizedMesh& mesh, Coding coding, Expected expected) {
   Walked walked;
   const auto n_vertices = static_cast<uint32_t>(mesh.vertices.size());
   const Points points = find_points(mesh.vertices);
@@ -56,7 +57,7 @@ Walked walk(const QuantizedMesh& mesh, Coding coding) {
   for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
   const std::vector<uint8_t> degenerate = find_degenerate_faces(point_indices, mesh.faces, points.count);
   CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, degenerate, points.count,
-                                                       coding != Coding::tables, coding != Coding::adaptive);
+                                                       coding != Coding::tables, coding != Coding::adaptive, expected);
   walked.points = std::move(connectivity.topology);
   walked.connectivity_bytes = std::move(connectivity.adaptive_bytes);
   walked.connectivity_by_tables = std::move(connectivity.table_bytes);
@@ -350,7 +351,7 @@ void encode_vertices(const VertexSections& out) {
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
   PAC_CHECK(check_mesh(mesh));
   const Coding coding = coding_for(mesh, options.effort);
-  Walked walked = walk(mesh, coding);
+  Walked walked = walk(mesh, coding, options.trained_priors ? Expected::faces : Expected::nothing);
   Header header = header_of(mesh, walked, options);
   if (options.effort != Effort::fast) find_copies(walked);
   if (coding == Coding::tables) choose_tables(walked, options.effort, header);
@@ -363,6 +364,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   encode_vertices({walked, options, header, sections, coding == Coding::either ? &by_tables : nullptr, speed});
   if (coding == Coding::either) keep_fastest(header, speed.plain, speed.grown, sections, by_tables);
   header.expected_tables = header.expected_tables && header.may_expect_tables();
+  header.expected_faces = options.trained_priors && header.by_tables(kConnectivity);
   sections[kMaterials] = encode_materials(walked.points, walked.material);
   if (header.has(kFaceValues))
     sections[kFaceValues] = encode_face_values(walked.points, face_values_in_order(mesh, walked.order),
@@ -390,7 +392,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
 QuantizedMesh reorder(const QuantizedMesh& mesh) {
   QuantizedMesh result;
   if (!check_mesh(mesh)) return result;
-  Walked walked = walk(mesh, Coding::adaptive);
+  Walked walked = walk(mesh, Coding::adaptive, Expected::nothing);
   result.position_bits = mesh.position_bits;
   std::copy(mesh.origin, mesh.origin + 3, result.origin);
   std::copy(mesh.step, mesh.step + 3, result.step);

@@ -23,10 +23,11 @@ FrequencyTable table_of(const SymbolModel& model) {
 class Tables {
  public:
   Tables(size_t n_contexts, size_t n_tables) : of_context_(n_contexts) { tables_.reserve(n_tables); }
-  const LookupTable* add(const SymbolModel& model) {
-    tables_.emplace_back().assign(table_of(model));
+  const LookupTable* add(const FrequencyTable& table) {
+    tables_.emplace_back().assign(table);
     return &tables_.back();
   }
+  const LookupTable* add(const SymbolModel& model) { return add(table_of(model)); }
   const LookupTable*& operator[](size_t context) { return of_context_[context]; }
   const std::vector<const LookupTable*>& of_context() const { return of_context_; }
 
@@ -35,6 +36,25 @@ class Tables {
   std::vector<const LookupTable*> of_context_;
 };
 
+// [context][symbol]
+constexpr uint8_t kWalkWeights[kWalkContexts][kWalkSymbols] = {
+#include "geomcodec/walk_priors.inc"
+};
+
+FrequencyTable table_of(const uint8_t (&weight)[kWalkSymbols]) {
+  constexpr uint32_t kSpare = kTableTotal - uint32_t{kWalkSymbols};
+  uint32_t total = 0, lower = 0, start = 0;
+  for (const uint8_t part : weight) total += part;
+  FrequencyTable table;
+  for (size_t s = 0; s < kWalkSymbols; ++s) {
+    lower += weight[s];
+    const uint32_t end = static_cast<uint32_t>(s + 1) + kSpare * lower / total;
+    table.entry[s] = {static_cast<uint16_t>(end - start), static_cast<uint16_t>(start)};
+    start = end;
+  }
+  return table;
+}
+
 // A class's models by scale and by other; the highest scale has that before it.
 using ClassRow = const SymbolModel*;
 const SymbolModel& by_scale(ClassRow row, size_t scale) {
@@ -42,6 +62,26 @@ const SymbolModel& by_scale(ClassRow row, size_t scale) {
 }
 const SymbolModel& by_other(ClassRow row, size_t other) {
   return row[2 * kClasses + other];
+}
+
+// Contexts that training met too seldom have the rows of others: rows that are alike share a table.
+Tables tables_of_faces() {
+  const auto same_row = [](size_t one, size_t other) {
+    return std::equal(kWalkWeights[one], kWalkWeights[one] + kWalkSymbols, kWalkWeights[other]);
+  };
+  const auto first_like = [&](size_t context) {
+    size_t first = 0;
+    while (!same_row(first, context)) ++first;
+    return first;
+  };
+  size_t n_rows = 0;
+  for (size_t context = 0; context < kWalkContexts; ++context) n_rows += first_like(context) == context ? 1 : 0;
+  Tables tables(kWalkContexts, n_rows);
+  for (size_t context = 0; context < kWalkContexts; ++context) {
+    const size_t first = first_like(context);
+    tables[context] = first < context ? tables[first] : tables.add(table_of(kWalkWeights[context]));
+  }
+  return tables;
 }
 
 Tables tables_of_positions() {
@@ -102,6 +142,10 @@ const std::vector<const LookupTable*>& expected_tables(Expected what) {
   switch (what) {
     case Expected::nothing:
       break;
+    case Expected::faces: {
+      static const Tables faces = tables_of_faces();
+      return faces.of_context();
+    }
     case Expected::positions: {
       static const Tables positions = tables_of_positions();
       return positions.of_context();

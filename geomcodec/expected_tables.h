@@ -30,10 +30,14 @@ struct LookupTable : FrequencyTable {
 };
 
 // Contexts as table_positions.h and attribute_coder.h number them.
-enum class Expected : uint8_t { nothing, positions, colors, others };
+enum class Expected : uint8_t { nothing, faces, positions, colors, others };
 
 // [context]: its table, for as long as the program runs; empty for `nothing`.
 const std::vector<const LookupTable*>& expected_tables(Expected what);
+
+// The contexts of the faces' walk, as connectivity.cpp numbers them, and its symbols. Their expected tables are
+// geomcodec/walk_priors.inc, which bench/peers/geom_priors.cpp prints.
+inline constexpr size_t kWalkContexts = 696, kWalkSymbols = 8;
 
 // The contexts of positions: by role, number of parallelograms (none, one, more), mean class of the neighbors in
 // halves.

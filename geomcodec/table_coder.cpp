@@ -8,19 +8,17 @@
 namespace pac::geomcodec {
 namespace {
 
-using Counts = std::array<uint32_t, kTableSymbols>;
-
 // How a context's table is told.
 enum TableKind : uint32_t { kExpected, kOneSymbol, kOwn, kAsBefore };
 
-uint64_t total_of(const Counts& counts) {
+uint64_t total_of(const SymbolCounts& counts) {
   uint64_t total = 0;
   for (const uint32_t count : counts) total += count;
   return total;
 }
 
 // Frequencies in proportion to counts, at least 1 where a symbol occurs; the most frequent one takes what is left.
-FrequencyTable normalized(const Counts& counts) {
+FrequencyTable normalized(const SymbolCounts& counts) {
   const uint64_t total = total_of(counts);
   const size_t most = static_cast<size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
   std::array<uint32_t, kTableSymbols> freq = {};
@@ -146,7 +144,7 @@ constexpr uint64_t kImpossible = kUnit << 40;  // a table that lacks a symbol
 constexpr uint64_t kRunBits = 10;              // about so many tell a run of expected tables
 
 // What the counts take by a table, in kUnit.
-uint64_t cost(const Counts& counts, const FrequencyTable& table) {
+uint64_t cost(const SymbolCounts& counts, const FrequencyTable& table) {
   uint64_t sum = 0;
   for (size_t s = 0; s < kTableSymbols; ++s) {
     if (counts[s] == 0) continue;
@@ -163,7 +161,7 @@ struct OwnTable {
   uint64_t cost = kImpossible;
 
   OwnTable() = default;
-  explicit OwnTable(const Counts& counts) {
+  explicit OwnTable(const SymbolCounts& counts) {
     if (total_of(counts) == 0) return;
     table = normalized(counts);
     single = table.entry[highest_of(table)].freq == kTableTotal;
@@ -172,7 +170,7 @@ struct OwnTable {
 };
 
 // Whether each context keeps the expected table, those together costing least.
-std::vector<uint8_t> choose_expected(std::span<const Counts> counts, std::span<const OwnTable> own,
+std::vector<uint8_t> choose_expected(std::span<const SymbolCounts> counts, std::span<const OwnTable> own,
                                      const std::vector<const LookupTable*>& expected) {
   // Least of all contexts up to this one if it has its own table, if it has the expected one, and whether the one
   // before it has that then.
@@ -193,11 +191,11 @@ std::vector<uint8_t> choose_expected(std::span<const Counts> counts, std::span<c
 }
 
 // The table of each context, told as the cheapest of the kinds.
-std::vector<FrequencyTable> choose_tables(std::span<const Counts> counts, Expected what, BitsOut& out) {
+std::vector<FrequencyTable> choose_tables(std::span<const SymbolCounts> counts, Expected what, BitsOut& out) {
   const std::vector<const LookupTable*>& expected = expected_tables(what);
   std::vector<OwnTable> own;
   own.reserve(counts.size());
-  for (const Counts& of_context : counts) own.emplace_back(of_context);
+  for (const SymbolCounts& of_context : counts) own.emplace_back(of_context);
   const std::vector<uint8_t> keeps = choose_expected(counts, own, expected);
   std::vector<FrequencyTable> tables(counts.size());
   const FrequencyTable* before = nullptr;
@@ -229,11 +227,15 @@ std::vector<FrequencyTable> choose_tables(std::span<const Counts> counts, Expect
 
 }  // namespace
 
-std::vector<uint8_t> TableEncoder::finish() {
-  std::vector<Counts> counts(n_contexts_, Counts{});
+std::vector<SymbolCounts> TableEncoder::counts() const {
+  std::vector<SymbolCounts> counts(n_contexts_, SymbolCounts{});
   for (const uint16_t note : noted_) ++counts[note >> 6][note >> 2 & 15];
+  return counts;
+}
+
+std::vector<uint8_t> TableEncoder::finish() {
   BitsOut out;
-  const std::vector<FrequencyTable> tables = choose_tables(counts, expected_, out);
+  const std::vector<FrequencyTable> tables = choose_tables(counts(), expected_, out);
   std::vector<uint8_t> bytes = out.take();
 
   // Backwards, as a decoder meets the symbols forwards.
@@ -250,8 +252,8 @@ std::vector<uint8_t> TableEncoder::finish() {
     }
     x = (x / entry.freq << kTableBits) + x % entry.freq + entry.start;
   }
-  for (const uint32_t x : state)
-    for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(x >> shift));
+  for (size_t lane = 0; lane < lanes_of(expected_); ++lane)
+    for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<uint8_t>(state[lane] >> shift));
   for (size_t i = words.size(); i-- > 0;) {
     bytes.push_back(static_cast<uint8_t>(words[i]));
     bytes.push_back(static_cast<uint8_t>(words[i] >> 8));
@@ -311,18 +313,18 @@ size_t SymbolTables::parse(std::span<const uint8_t> bytes, size_t n_contexts, Ex
 
 TableDecoder::TableDecoder(std::span<const uint8_t> bytes, size_t n_contexts, Expected expected, SymbolTables& tables)
     : data_(bytes.data()), size_(bytes.size()) {
-  const size_t tables_size = tables.parse(bytes, n_contexts, expected);
+  const size_t n_lanes = lanes_of(expected), tables_size = tables.parse(bytes, n_contexts, expected);
   of_context_ = tables.of_context();
   static constexpr uint8_t kNothing[2] = {0, 0};
-  bool sound = tables_size > 0 && bytes.size() - tables_size >= 4 * kLanes;
+  bool sound = tables_size > 0 && bytes.size() - tables_size >= 4 * n_lanes;
   for (size_t lane = 0; lane < kLanes; ++lane) {
     state_[lane] = kLowestState;
-    if (!sound) continue;
+    if (!sound || lane >= n_lanes) continue;
     const uint8_t* at = data_ + tables_size + 4 * lane;
     state_[lane] = uint32_t{at[0]} | uint32_t{at[1]} << 8 | uint32_t{at[2]} << 16 | uint32_t{at[3]} << 24;
     sound = state_[lane] >= kLowestState;
   }
-  position_ = tables_size + 4 * kLanes;
+  position_ = tables_size + 4 * n_lanes;
   if (sound) return;
   data_ = kNothing;
   size_ = 2;

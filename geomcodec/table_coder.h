@@ -18,6 +18,11 @@ namespace pac::geomcodec {
 
 inline constexpr uint32_t kLowestState = 1u << 16;
 inline constexpr size_t kLanes = 4, kMaxTableContexts = 1024;
+// Lanes whose states are told; the others are not used.
+inline size_t lanes_of(Expected expected) {
+  return expected == Expected::faces ? 1 : kLanes;
+}
+using SymbolCounts = std::array<uint32_t, kTableSymbols>;
 
 class TableEncoder {
  public:
@@ -38,6 +43,7 @@ class TableEncoder {
     return value;
   }
   bool failed() const { return false; }
+  std::vector<SymbolCounts> counts() const;  // by context, so far
   // The section's bytes. Leaves the encoder unusable.
   std::vector<uint8_t> finish();
 

@@ -178,6 +178,15 @@ TEST_CASE("each header field at its limit and one past it") {
     bytes->insert(bytes->begin() + 5, more, more + 2);
     repair_checksum(*bytes, bytes->size());
   }
+  // Version 8 is there for those of connectivity.
+  Bytes no_tables_of_faces = header(4, 16, {3, 0, 0, 1, 0, 0, 0, 0, 0}), no_feature_of_version_8 = no_tables_of_faces;
+  for (Bytes* bytes : {&no_tables_of_faces, &no_feature_of_version_8}) {
+    (*bytes)[3] = 8;
+    const bool by_positions = bytes == &no_tables_of_faces;
+    const uint8_t more[2] = {static_cast<uint8_t>(by_positions ? 4 : 1), static_cast<uint8_t>(by_positions ? 32 : 1)};
+    bytes->insert(bytes->begin() + 5, more, more + 2);
+    repair_checksum(*bytes, bytes->size());
+  }
   repair_checksum(unknown_features, unknown_features.size());
   repair_checksum(all_degenerate, all_degenerate.size());
   const uint64_t top = 0x7FFFFFFF;
@@ -188,6 +197,10 @@ TEST_CASE("each header field at its limit and one past it") {
       {"unknown features", unknown_features, Error::corrupt, "features are unknown, or none that needs this version"},
       {"no expected tables", nothing_expected, Error::corrupt, "features are unknown, or none that needs this version"},
       {"expected tables of faces", expected_by_faces, Error::corrupt, "no section or a wrong one is coded by tables"},
+      {"expected tables of faces that have none", no_tables_of_faces, Error::corrupt,
+       "no section or a wrong one is coded by tables"},
+      {"no expected tables of faces", no_feature_of_version_8, Error::corrupt,
+       "features are unknown, or none that needs this version"},
       {"all faces degenerate", all_degenerate, Error::corrupt, "no face or all of them are degenerate"},
       {"choosing by tables", choosing_by_tables, Error::corrupt, "no section or a wrong one is coded by tables"},
       {"values of faces of 17 bits", header(128 + 4, 16, {17, 1, 0, 0, 0, 0, 0, 0}), Error::corrupt,

@@ -34,12 +34,20 @@ class Bit:  # section 3
 WEIGHT = [1024, 920, 640, 380, 210, 115, 62, 33, 18, 10, 6, 4]
 
 
-def read_table(name, sets, contexts):  # [set][context][class]
+def read_table(name, sets, contexts, symbols=16):  # [set][context][class]
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "geomcodec", name)
     numbers = [int(x) for x in re.findall(r"\d+", open(path).read())]
-    assert len(numbers) == sets * contexts * 16
-    rows = [numbers[i : i + 16] for i in range(0, len(numbers), 16)]
+    assert len(numbers) == sets * contexts * symbols
+    rows = [numbers[i : i + symbols] for i in range(0, len(numbers), symbols)]
     return [rows[i : i + contexts] for i in range(0, len(rows), contexts)]
+
+
+def walk_shares():  # section 15, connectivity
+    def shares(weights):
+        starts = [i + 2040 * sum(weights[:i]) // sum(weights) for i in range(9)]
+        return [b - a for a, b in zip(starts, starts[1:])] + [0] * 8
+
+    return [shares(row) for row in read_table("walk_priors.inc", 1, 696, 8)[0]]
 
 
 def read_priors():  # the sets of classes, the sets of details
@@ -198,7 +206,7 @@ class Decoder:
 
 
 class TableDecoder:  # section 15
-    def __init__(self, data, contexts, expected):  # expected(context): its starts
+    def __init__(self, data, contexts, expected, lanes=4):  # expected(context): its shares
         self.data, self.used, self.bits = data, 0, int.from_bytes(data, "big")
         self.forward, self.taken = int.from_bytes(data, "little"), 0
         self.tables, last = {}, None
@@ -208,8 +216,7 @@ class TableDecoder:  # section 15
             if kind == 0:
                 for context in range(context, context + self.taken_number()):
                     if expected:
-                        starts = [i + (x * 2032 >> 15) for i, x in enumerate(expected(context))]
-                        self.tables[context] = [b - a for a, b in zip(starts, starts[1:])]
+                        self.tables[context] = expected(context)
                 context += 1
                 continue
             if kind == 1:
@@ -224,8 +231,8 @@ class TableDecoder:  # section 15
             context += 1
         assert context == contexts
         self.at = (self.taken + 7) // 8
-        self.state = list(struct.unpack_from("<4I", data, self.at))
-        self.at += 16
+        self.state = list(struct.unpack_from("<%dI" % lanes, data, self.at))
+        self.at += 4 * lanes
 
     def take(self, k):
         value = self.forward >> self.taken & ((1 << k) - 1)
@@ -271,7 +278,7 @@ class TableDecoder:  # section 15
         return x
 
     def finish(self):
-        assert self.state == [65536] * 4 and self.at + (self.used + 7) // 8 == len(self.data)
+        assert set(self.state) == {65536} and self.at + (self.used + 7) // 8 == len(self.data)
 
 
 class Fields:  # section 1, and what ends a header
@@ -299,14 +306,16 @@ class Fields:  # section 1, and what ends a header
 
 class Header(Fields):  # section 2
     def __init__(self, b):
-        assert b[:3] == b"PGC" and b[3] in (3, 4, 5, 6, 7)
+        assert b[:3] == b"PGC" and b[3] in (3, 4, 5, 6, 7, 8)
         self.flags, self.at, self.b = b[4], 5, b
         self.chooses = b[3] == 5
         self.tables = self.byte() if b[3] > 3 else 0
         features = self.byte() if b[3] > 5 else 0
-        self.expects = features & 16 > 0
+        self.expects, self.expects_faces = features & 16 > 0, features & 32 > 0
         if b[3] > 5:
-            assert (features & 13 and features < 16) if b[3] == 6 else (self.expects and features < 32 and self.tables & 60)
+            assert (features & 13 and features < 16) if b[3] == 6 else features >> b[3] - 3 == 1
+            assert not self.expects or self.tables & 60
+            assert not self.expects_faces or self.tables & 1
             self.chooses = features & 2 > 0
         self.ranked, self.by_size = features & 4 > 0, features & 8 > 0
         assert (self.tables > 0 or b[3] != 4) and self.tables & ~(0x39 if features & 14 or self.chooses else 0x3D) == 0
@@ -346,8 +355,11 @@ class Header(Fields):  # section 2
 
     def decoder(self, section, contexts):
         data = self.sections[section]
-        expects = self.expects and section > 0
-        return TableDecoder(data, contexts, expects and self.expected(section)) if self.tables >> section & 1 else Decoder(data)
+        if not self.tables >> section & 1:
+            return Decoder(data)
+        if section == 0:
+            return TableDecoder(data, contexts, self.expects_faces and walk_shares().__getitem__, 1 if self.expects_faces else 4)
+        return TableDecoder(data, contexts, self.expects and self.expected(section))
 
     def expected(self, section):  # section 15
         priors = read_priors()[0]
@@ -365,7 +377,11 @@ class Header(Fields):  # section 2
             trained = section == 3 and component < 3
             return Symbols(halves=2 * other, weights=priors[9][34 + other] if trained else None).start
 
-        return starts
+        def shares(context):
+            ends = [i + (x * 2032 >> 15) for i, x in enumerate(starts(context))]
+            return [b - a for a, b in zip(ends, ends[1:])]
+
+        return shares
 
     def floats(self, n):
         self.at += 4 * n

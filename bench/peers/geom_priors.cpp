@@ -1,6 +1,7 @@
 // Trains geomcodec/priors.inc and geomcodec/detail_priors.inc: encodes generated meshes, untrained, reads where the
 // decoder's models ended, and prints their means, weighted by what each has seen. Deterministic.
 // usage: geom_priors > geomcodec/priors.inc             geom_priors --details > geomcodec/detail_priors.inc
+//        geom_priors --faces > geomcodec/walk_priors.inc: from the symbols of the faces' walk, by tables
 //        geom_priors --sizes: bytes with and without, on meshes not trained on
 #include <array>
 #include <cmath>
@@ -214,7 +215,7 @@ void train(const QuantizedMesh& mesh, Collected& collected) {
   if (header.n_split_vertices > 0 || !header.has(kColors)) return;
   const Topology points =
       decode_connectivity(stream.section[kConnectivity], {header.n_points(), header.n_faces, header.n_corners}, false,
-                          bytes.size())
+                          Expected::nothing, bytes.size())
           .value();
   const Seams seams = decode_seams({}, points, header.n_used_vertices).value();
   const Stencils stencils(points);
@@ -247,6 +248,138 @@ void train(const QuantizedMesh& mesh, Collected& collected) {
                     color_coder.models().channel[channel].classes[basis]);
 }
 
+// The faces without those of equal corners, `now` telling which vertex each vertex became.
+void merge_vertices(pac::Mesh& mesh, const std::vector<uint32_t>& now) {
+  std::vector<uint32_t> indices;
+  std::vector<pac::Face> faces;
+  for (const pac::Face& face : mesh.faces) {
+    const uint32_t corner[3] = {now[mesh.indices[face.first]], now[mesh.indices[face.first + 1]],
+                                now[mesh.indices[face.first + 2]]};
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    faces.push_back({static_cast<uint32_t>(indices.size()), 3, 0});
+    indices.insert(indices.end(), corner, corner + 3);
+  }
+  mesh.indices = std::move(indices);
+  mesh.faces = std::move(faces);
+}
+
+// A mesh of triangles with edges drawn together until so many parts of 16 of its faces are gone, none at vertices that
+// would have too many edges: what simplification leaves, and scans.
+void simplify(pac::Mesh& mesh, uint32_t parts, Random& random) {
+  const size_t wanted = mesh.faces.size() * (16 - parts) / 16;
+  for (int round = 0; round < 40 && mesh.faces.size() > wanted; ++round) {
+    std::vector<uint32_t> degree(mesh.vertices.size()), now(mesh.vertices.size());
+    for (const uint32_t index : mesh.indices) ++degree[index];
+    for (uint32_t v = 0; v < now.size(); ++v) now[v] = v;
+    std::vector<uint8_t> near(mesh.vertices.size());  // to an edge drawn together in this round
+    size_t left = mesh.faces.size();
+    for (const pac::Face& face : mesh.faces) {
+      const uint32_t* corner = mesh.indices.data() + face.first;
+      const uint32_t k = random.below(24), a = corner[k % 3], b = corner[(k + 1) % 3];
+      if (k >= 3 || left <= wanted || near[a] + near[b] > 0 || degree[a] + degree[b] > 12) continue;
+      for (const pac::Face& other : mesh.faces) {
+        const uint32_t* its = mesh.indices.data() + other.first;
+        if (std::find(its, its + 3, a) != its + 3 || std::find(its, its + 3, b) != its + 3)
+          for (int i = 0; i < 3; ++i) near[its[i]] = 1;
+      }
+      now[b] = a;
+      left -= 2;
+    }
+    merge_vertices(mesh, now);
+  }
+}
+
+// Without every n-th face or so.
+void make_holes(pac::Mesh& mesh, uint32_t n, Random& random) {
+  std::erase_if(mesh.faces, [&](const pac::Face& /*face*/) { return random.below(n) == 0; });
+}
+
+// Every n-th quadrilateral or so as two triangles.
+void cut_some(pac::Mesh& mesh, uint32_t n, Random& random) {
+  std::vector<pac::Face> faces;
+  std::vector<uint32_t> indices;
+  for (const pac::Face& face : mesh.faces) {
+    const uint32_t* corner = mesh.indices.data() + face.first;
+    const bool cut = face.count == 4 && random.below(n) == 0;
+    const auto add = [&](std::initializer_list<uint32_t> corners) {
+      faces.push_back({static_cast<uint32_t>(indices.size()), static_cast<uint32_t>(corners.size()), 0});
+      indices.insert(indices.end(), corners);
+    };
+    if (cut || face.count == 3) add({corner[0], corner[1], corner[2]});
+    if (cut) add({corner[0], corner[2], corner[3]});
+    if (!cut && face.count == 4) add({corner[0], corner[1], corner[2], corner[3]});
+  }
+  mesh.faces = std::move(faces);
+  mesh.indices = std::move(indices);
+}
+
+// The faces of a surface, simplified, cut, with holes, or as they are.
+pac::Mesh training_faces(uint64_t seed) {
+  Random random(seed + 2000);
+  pac::Mesh mesh = surface(seed);
+  if (mesh.faces[0].count == 3 && random.below(4) != 0) simplify(mesh, 2 + random.below(11), random);
+  if (mesh.faces[0].count == 4 && random.below(2) == 0) cut_some(mesh, 2 + random.below(8), random);
+  if (random.below(3) == 0) make_holes(mesh, 8 + random.below(80), random);
+  return mesh;
+}
+
+// Symbols of the walk's contexts, those of any mesh counting a limited number of times: what occurs often gets a table
+// of its own.
+class WalkSymbols {
+ public:
+  void add(const pac::Mesh& mesh) {
+    constexpr double kMost = 64;
+    const auto counts = count_walk_symbols(mesh.indices, mesh.faces, static_cast<uint32_t>(mesh.vertices.size()));
+    for (size_t context = 0; context < kWalkContexts; ++context) {
+      double total = 0;
+      for (const uint32_t count : counts[context]) total += count;
+      for (size_t s = 0; s < kWalkSymbols; ++s)
+        sums_[context][s] += counts[context][s] * (total > kMost ? kMost / total : 1.0);
+    }
+  }
+  // A context is taken together with its likes of any second degree, and these with those of any first, which count as
+  // a few symbols; where a mesh of the training never was, the row is theirs.
+  void print() const {
+    for (size_t context = 0; context < kWalkContexts; ++context) {
+      const bool gate = context < kGates;
+      const size_t place = gate ? context : context - kGates;
+      const size_t inner = gate ? 8 : 2, outer = gate ? 480 : 72;  // contexts of one second degree, of all degrees
+      const Weights of_place = together(context - place % outer + place % inner, inner, outer / inner);
+      const Weights of_first = together(context - place % (6 * inner) + place % inner, inner, 6);
+      Weights sums = {};
+      for (size_t s = 0; s < (gate ? kWalkSymbols : 6); ++s) sums[s] = 1;
+      for (const Weights& more : {of_place, of_first, sums_[context]}) sums = added(more, sums);
+      const double highest = *std::max_element(sums.begin(), sums.end());
+      std::printf("{");
+      for (size_t s = 0; s < kWalkSymbols; ++s)
+        std::printf("%d%s", static_cast<int>(255 * sums[s] / highest + 0.5), s + 1 < kWalkSymbols ? "," : "},\n");
+    }
+  }
+
+ private:
+  static constexpr double kFew = 8;
+  static constexpr size_t kGates = 480;  // contexts of gates; the others are corners'
+  using Weights = std::array<double, kWalkSymbols>;
+  static double total(const Weights& sums) {
+    double total = 0;
+    for (const double sum : sums) total += sum;
+    return total;
+  }
+  // What was met, and `like` as if it were so many symbols.
+  static Weights added(Weights met, const Weights& like) {
+    const double all = total(like), few = all > 0 ? kFew / all : 0;
+    for (size_t s = 0; s < kWalkSymbols; ++s) met[s] += few * like[s];
+    return met;
+  }
+  Weights together(size_t first, size_t step, size_t n) const {
+    Weights sums = {};
+    for (size_t i = 0; i < n; ++i)
+      for (size_t s = 0; s < kWalkSymbols; ++s) sums[s] += sums_[first + i * step][s];
+    return sums;
+  }
+  std::array<Weights, kWalkContexts> sums_ = {};
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -259,6 +392,12 @@ int main(int argc, char** argv) {
       std::printf("%6zu faces %7zu -> %7zu bytes, %.3f\n", mesh.faces.size(), without, with,
                   static_cast<double>(with) / static_cast<double>(without));
     }
+    return 0;
+  }
+  if (argc > 1 && std::strcmp(argv[1], "--faces") == 0) {
+    WalkSymbols symbols;
+    for (uint64_t seed = 0; seed < kTraining; ++seed) symbols.add(training_faces(seed));
+    symbols.print();
     return 0;
   }
   Collected collected;
