@@ -75,6 +75,11 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
   const int n_groups = list_groups(shading_samples, first_sample, groups);
   if (shading_samples == 0) {
     const std::span<const ShadingGroup> samples{groups, static_cast<size_t>(n_groups)};
+    int left[2], n_left = 0;
+    for (const int r : renderings)
+      if (!add_textured_grid(input, area, r)) left[n_left++] = r;
+    renderings = {left, static_cast<size_t>(n_left)};
+    if (renderings.empty()) return;
     if (std::all_of(renderings.begin(), renderings.end(), [&](int r) { return fills_squares(input, r); }))
       return shade_each_sample(input, area, renderings, samples);
     for (const int& rendering : renderings) shade_each_sample(input, area, {&rendering, 1}, samples);
@@ -94,6 +99,16 @@ void TilePainter::shade_grid(const PaintInput& input, const Area& area, std::spa
               sums_[rendering]);
       }
     }
+}
+
+// Textured squares of pixels with all their samples, which show the same triangle more often than squares of as many
+// pixels with one sample each.
+bool TilePainter::add_textured_grid(const PaintInput& input, const Area& area, int rendering) {
+  if (grid_.n != kGridSamples || input.has_final_colors[rendering] || input.painted[rendering] == nullptr) return false;
+  input.kernels->tile.add_textured_grid(grid_, area.width, area.height, triangles_.data(), rendering,
+                                        position(area, {0, 0}), input.painted[rendering], input.background,
+                                        sums_[rendering]);
+  return true;
 }
 
 // All samples of the grid, each with a color: of one rendering, or of several that fill squares.

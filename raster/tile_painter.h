@@ -72,6 +72,7 @@ class TilePainter {
                  uint16_t* sums);
   void paint_grid(const PaintInput& input, const Area& area, std::span<const SampleOffset> offsets, int first_sample);
   void shade_grid(const PaintInput& input, const Area& area, std::span<const int> renderings, int first_sample);
+  bool add_textured_grid(const PaintInput& input, const Area& area, int rendering);
   void shade_each_sample(const PaintInput& input, const Area& area, std::span<const int> renderings,
                          std::span<const ShadingGroup> samples);
   void split_by_sample(const Area& area, int first_row, int n_rows);

@@ -427,4 +427,48 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("add_textured_grid: what add_textured adds for each of the samples") {
+  const TileKernels& scalar = kernels_for(Isa::scalar)->tile;
+  Random random(73);
+  const NoiseTexture textures[2] = {{random, 64, 32, 2, false}, {random, 24, 20, 2, true}};
+  const PaintedSurface surfaces[3] = {{&textures[0].sampler, 0}, {nullptr, 0}, {&textures[1].sampler, -2}};
+  const uint8_t background[3] = {10, 200, 255};
+  for (uint32_t round = 0; round < 24; ++round) {
+    SeenTile tile(round);
+    for (std::vector<float>& record : tile.input.attributes)
+      for (size_t i = 9; i < 15; ++i) record[i] *= 0.01f;
+    const int width = 2 * (1 + static_cast<int>(random.bits() % (kTileSize / 2)));
+    const int height = 32 - static_cast<int>(round % 4) / 2 * 2, rendering = static_cast<int>(round % 2);
+    uint32_t neighbors[kTilePixels];
+    int from[kTilePixels];
+    for (int i = 0; i < kTilePixels; ++i) {
+      neighbors[i] = tile.ids[(i + 1) % kTilePixels];
+      from[i] = random.bits() % 2 == 0 ? kGridSamples : static_cast<int>(random.bits() % (kGridSamples + 1));
+    }
+    ShownGrid shown(kGridSamples, tile.ids, neighbors, from);
+    for (int i = 0; i < kTilePixels; ++i)
+      if (from[i] == kGridSamples) shown.whole[i] = tile.ids[i];
+    const SamplePosition origin{tile.origin.x - 128, tile.origin.y - 128};
+    std::vector<uint16_t> expected = sums_of(background);
+    for (int s = 0; s < kGridSamples; ++s) {
+      shown.grid.x[s] = static_cast<int32_t>(random.bits() % 256);
+      shown.grid.y[s] = static_cast<int32_t>(random.bits() % 256);
+      alignas(32) uint32_t ids[kTilePixels] = {};
+      for (int i = 0; i < kTilePixels; ++i)
+        if (i % kTileSize < width) ids[i] = s < from[i] ? tile.ids[i] : neighbors[i];
+      const SampleIds sample{ids, {origin.x + shown.grid.x[s], origin.y + shown.grid.y[s]}};
+      scalar.add_textured(&sample, 1, width, height, tile.list.data(), rendering, surfaces, background,
+                          expected.data());
+    }
+    for (int isa = 0; isa < kIsaCount; ++isa) {
+      const Kernels* const table = kernels_for(static_cast<Isa>(isa));
+      if (table == nullptr) continue;
+      std::vector<uint16_t> sums = sums_of(background);
+      table->tile.add_textured_grid(shown.grid, width, height, tile.list.data(), rendering, origin, surfaces,
+                                    background, sums.data());
+      REQUIRE(painted(expected, width, height, 77) == painted(sums, width, height, 77));
+    }
+  }
+}
+
 }  // namespace

@@ -52,6 +52,18 @@ void add_textured(const SampleIds* samples, int n_samples, int width, int height
     for_each_pack(samples[s].ids, width, height, triangles, rendering, samples[s].origin, surfaces, add);
 }
 
+void add_textured_grid(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,
+                       int rendering, SamplePosition origin, const PaintedSurface* surfaces,
+                       const uint8_t background[3], uint16_t* sums) {
+  for (int s = 0; s < kGridSamples; ++s) {
+    uint32_t ids[kTileSize * kTileSize];
+    for (int at = 0; at < kTileSize * kTileSize; ++at)
+      ids[at] = grid.whole[at] == kSplitPixel ? grid.ids[at * kGridSamples + s] : grid.whole[at];
+    const SampleIds sample{ids, {origin.x + grid.x[s], origin.y + grid.y[s]}};
+    add_textured(&sample, 1, width, height, triangles, rendering, surfaces, background, sums);
+  }
+}
+
 void paint_textured(const uint32_t* ids, int width, int height, const RasterTriangle* const* triangles, int rendering,
                     SamplePosition origin, const PaintedSurface* surfaces, const uint8_t background[3], uint8_t* rgb,
                     ptrdiff_t stride) {
@@ -69,6 +81,7 @@ void paint_textured(const uint32_t* ids, int width, int height, const RasterTria
 
 void fill_paint_scalar(TileKernels& table) {
   table.add_textured = add_textured;
+  table.add_textured_grid = add_textured_grid;
   table.paint_textured = paint_textured;
 }
 

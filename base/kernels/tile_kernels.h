@@ -341,6 +341,12 @@ struct TileKernels {
                          int rendering, SamplePosition origin, const PaintedSurface* surfaces,
                          const uint8_t background[3], uint8_t* rgb, ptrdiff_t stride);
 
+  // add_textured() of all samples of a grid of kGridSamples; origin: 256 * tile origin. Squares of 2 x 2 pixels are
+  // read and added to whole.
+  void (*add_textured_grid)(const SampleGrid& grid, int width, int height, const RasterTriangle* const* triangles,
+                            int rendering, SamplePosition origin, const PaintedSurface* surfaces,
+                            const uint8_t background[3], uint16_t* sums);
+
   // RGB bytes of `width` (<= kTileSize) pixels: (sums >> shift), the three planes kTileSize^2 apart.
   void (*resolve_row)(const uint16_t* sums, int shift, int width, uint8_t* rgb);
 };

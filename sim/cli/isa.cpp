@@ -100,6 +100,7 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(tile, add_colors),
     PAC_KERNEL(tile, paint_colors),
     PAC_KERNEL(tile, add_textured),
+    PAC_KERNEL(tile, add_textured_grid),
     PAC_KERNEL(tile, paint_textured),
     PAC_KERNEL(tile, resolve_row),
     PAC_KERNEL(warp, reproject_row),
