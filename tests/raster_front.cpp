@@ -289,6 +289,10 @@ TEST_CASE("rasterize_all: a tile's triangles together, many behind others, give 
           t.z0 = t.z_min = t.z_max = static_cast<float>(triangles.size() + random.bits() % 8) / 70.0f;
           t.dzdx = t.dzdy = 0;
         }
+        if (round % 4 == 1 && triangles.size() < 8) {  // partly no nearer than the background
+          t.z0 += 0.25f;
+          t.z_max = 1;
+        }
         triangles.push_back(t);
       }
       std::vector<const RasterTriangle*> list;
