@@ -105,6 +105,11 @@ Result<void> decode_vertices(const ParsedStream& stream, const Topology& points,
                                    : adaptive(points, stencils);
   if (!positions) return at(positions.failure(), stream.section_offset(kPositions));
   mesh.vertices.assign(header.n_vertices(), blank_vertex(header));
+  if (header.n_split_vertices == 0 && !header.ranked) {
+    for (uint32_t v = 0; v < header.n_vertices(); ++v)
+      std::copy_n((*positions)[v].begin(), 3, mesh.vertices[v].position);
+    return {};
+  }
   for (uint32_t v = 0; v < header.n_vertices(); ++v) {
     uint32_t point = v < header.n_used_vertices ? seams.vertex_point[v] : v - header.n_split_vertices;
     if (point < rank.size()) point = rank[point];
@@ -172,6 +177,14 @@ Result<void> decode_with_seams(const ParsedStream& stream, const Topology& point
   return decode_attributes(stream, {topology, stencils, seams.sibling}, true, mesh);
 }
 
+std::vector<Face> faces_of(const Topology& topology, const std::vector<uint32_t>& material) {
+  std::vector<Face> faces;
+  faces.reserve(topology.n_faces());
+  for (uint32_t face = 0; face < topology.n_faces(); ++face)
+    faces.push_back({topology.face_first[face], topology.face_size(face), material.empty() ? 0 : material[face]});
+  return faces;
+}
+
 }  // namespace
 
 Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limits) {
@@ -195,8 +208,12 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
   }
   auto seams = decode_seams(stream.section[kSeams], points, header.n_used_vertices);
   if (!seams) return at(seams.failure(), stream.section_offset(kSeams));
-  auto material = decode_materials(stream.section[kMaterials], points, header.highest_material);
-  if (!material) return at(material.failure(), stream.section_offset(kMaterials));
+  std::vector<uint32_t> material;
+  if (header.has(kMaterials)) {
+    auto decoded = decode_materials(stream.section[kMaterials], points, header.highest_material);
+    if (!decoded) return at(decoded.failure(), stream.section_offset(kMaterials));
+    material = std::move(*decoded);
+  }
 
   QuantizedMesh mesh = empty_mesh(header);
   if (header.has(kPositions)) {
@@ -205,9 +222,7 @@ Result<QuantizedMesh> decode(std::span<const uint8_t> bytes, const Limits& limit
     else
       PAC_CHECK(decode_without_seams(stream, points, Stencils(points), *seams, mesh));
   }
-  mesh.faces.resize(points.n_faces());
-  for (uint32_t face = 0; face < points.n_faces(); ++face)
-    mesh.faces[face] = {points.face_first[face], points.face_size(face), (*material)[face]};
+  mesh.faces = faces_of(points, material);
   if (header.has(kFaceValues)) {
     auto values = decode_face_values(stream.section[kFaceValues], points, header.face_components, header.face_bits);
     if (!values) return at(values.failure(), stream.section_offset(kFaceValues));

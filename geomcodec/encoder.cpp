@@ -306,6 +306,7 @@ bool tables_suffice(const Stencils& stencils, std::span<const Position> position
   return true;
 }
 
+// Of many points by tables, unless these take more than a coder without contexts, or choosing pays.
 void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
   const Walked& walked = out.walked;
   Header& header = out.header;
@@ -316,11 +317,16 @@ void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
     section = encode_positions_by_tables(stencils, positions, bits, header.expected_of(kPositions));
     if (out.options.effort == Effort::fast) return;
     const Ranked ranked(walked.points, stencils, positions);
-    if (!choosing_pays(walked, stencils, positions, ranked, bits, out.options.trained_priors, section.size())) return;
+    const bool trained = out.options.trained_priors;
+    if (!choosing_pays(walked, stencils, positions, ranked, bits, trained, section.size()) &&
+        section.size() <= estimate_plainly(ranked.stencils, ranked.positions))
+      return;
+    PositionSection adaptive =
+        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, trained, false);
+    if (adaptive.bytes.size() >= section.size()) return;
     header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
-    header.trained = out.options.trained_priors;
-    return take_positions(
-        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, false), true, out);
+    header.trained = trained;
+    return take_positions(std::move(adaptive), true, out);
   }
   if (out.by_tables != nullptr && tables_suffice(stencils, positions, out)) {
     section = std::move((*out.by_tables)[kPositions]);

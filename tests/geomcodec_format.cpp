@@ -190,6 +190,23 @@ TEST_CASE("a large scan, whose triangles cut a grid either way, is not coded by 
   REQUIRE(pac::test::same(decode(balanced).value(), decode(fast).value()));
 }
 
+// Neighbors tell little and choosing helps little; the order of the points does.
+TEST_CASE("a large mesh is not coded by tables that take more than a coder without contexts") {
+  QuantizedMesh rough = pac::test::irregular_mesh(140);
+  rough.position_bits = 16;
+  uint32_t random = 1;
+  for (pac::geomcodec::QuantizedVertex& vertex : rough.vertices) {
+    for (uint16_t& coordinate : vertex.position) {
+      random = random * 1664525 + 1013904223;
+      coordinate = static_cast<uint16_t>(coordinate + (random >> 16) % 32);
+    }
+  }
+  const std::vector<uint8_t> balanced = encode(rough).value(), fast = encode(rough, {.effort = Effort::fast}).value();
+  REQUIRE(!positions_by_tables(balanced));
+  REQUIRE(positions_by_tables(fast));
+  REQUIRE(balanced.size() < fast.size());
+}
+
 TEST_CASE("copies of a thing among other things cost less than half of it, moved by whole steps or not") {
   const QuantizedMesh two = pac::test::copies_mesh(2), many = pac::test::copies_mesh(42);
   EncodedSize size_of_two, size;
