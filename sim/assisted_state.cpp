@@ -50,6 +50,7 @@ bool AssistedState::begin(Prediction prediction, Difference difference, Residual
   if (prediction == Prediction::block || (prediction == Prediction::none && !is_full_)) return false;
   if (!is_full_) fill_gray();
   if (is_key || prediction == Prediction::none) predictor_.forget();
+  predictor_.deblock(is_ratio_);  // measured: docs/video.md
   predictor_.begin(camera, objects);
   return true;
 }
@@ -80,8 +81,8 @@ void AssistedState::keep(const mpeg1::FrameView& coded, bool uses_predictor, std
 void AssistedState::composite(ConstRgbView low, RgbView shown) const {
   if (is_full_) {
     if (is_ratio_) log_from_rgb(low, shown);
-    composite_signed(is_ratio_ ? ConstRgbView(shown) : low, predictor_.difference(0), predictor_.difference(1),
-                     predictor_.difference(2), shown, isa_);
+    composite_signed(is_ratio_ ? ConstRgbView(shown) : low, predictor_.shown(0), predictor_.shown(1),
+                     predictor_.shown(2), shown, isa_);
     if (is_ratio_) rgb_from_log(low, shown, shown);
     return;
   }

@@ -173,6 +173,7 @@ void ModelPredictor::add_rows(const Frame420& base, PlaneView<const float> depth
     const uint32_t* const ids = id.row(y - first);
     find_row(y, depth.row(y - first), ids, begun_->luma);
     end_row(y, ids);
+    if (deblocks_) deblocker_.see_row(y, ids);
     carry_row(y, begun_->luma, begun_->chroma);
     begun_->found += begun_->luma.found();
     add_row(0, y, base);
@@ -217,6 +218,14 @@ void ModelPredictor::keep(PlaneView<const uint8_t> y, PlaneView<const uint8_t> c
   }
   std::swap(now_, before_);
   has_kept_ = true;
+  if (deblocks_) deblocker_.filter(kept_[0], y, reference_.y.view(), deblocked_);
+}
+
+void ModelPredictor::deblock(bool on) {
+  deblocks_ = on;
+  if (!on || deblocked_.width() > 0) return;
+  deblocker_ = Deblocker(width_, height_);
+  deblocked_ = BorderedPlane(width_, height_);
 }
 
 // What was carried becomes what is kept, in a part of the plane.

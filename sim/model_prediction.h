@@ -18,6 +18,7 @@
 #include "base/isa.h"
 #include "raster/scene.h"
 #include "sim/bordered_plane.h"
+#include "sim/deblocking.h"
 #include "sim/model_flow.h"
 #include "sim/row_carrier.h"
 #include "sim/surface_map.h"
@@ -69,6 +70,13 @@ class ModelPredictor {
   // The kept difference: luma and chroma, in 1/32.
   const BorderedPlane& difference(int component) const { return kept_[component]; }
 
+  // From the next begin() or reference() on: what of luma is to be shown is filtered at the borders of coded blocks.
+  void deblock(bool on);
+  // The kept difference as it is to be shown; its border is not filled.
+  const BorderedPlane& shown(int component) const {
+    return deblocks_ && component == 0 ? deblocked_ : kept_[component];
+  }
+
   // The next reference is the base: after a loss, or for a frame that must stand alone.
   void forget() { has_kept_ = false; }
 
@@ -102,6 +110,10 @@ class ModelPredictor {
     uint64_t found = 0;
   };
   std::optional<Begun> begun_;
+
+  bool deblocks_ = false;
+  Deblocker deblocker_;
+  BorderedPlane deblocked_;
 };
 
 }  // namespace pac::sim
