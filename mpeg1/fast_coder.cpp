@@ -6,6 +6,8 @@
 #include "base/kernels/block_kernels.h"
 #include "mpeg1/vlc_tables.h"
 
+#define PAC_INLINE inline __attribute__((always_inline))
+
 namespace pac::mpeg1 {
 namespace {
 
@@ -15,24 +17,32 @@ constexpr uint32_t kLeastIntraSad = 512;
 constexpr uint32_t kStillBonusBits = kBitsMotion - kBitsSkipped + 2;  // macroblocks skipped in a row share an address
 constexpr int kPatternBits = 1;  // by which one more block makes coded_block_pattern longer, about
 
-}  // namespace
-
-// A cache line holds four macroblocks' rows: those of the next four, of the picture and of its reference, are asked for
-// while these are worked on, as no hardware sees sixteen rows coming.
-void FastCoder::prefetch_luma() const {
-  constexpr int kLine = 64;
-  const uint8_t* s = source() + kLine;
-  const uint8_t* r = task_.reference.at(0, column_, row_) + kLine;
-  for (int y = 0; y < 16; ++y, s += task_.source.stride[0], r += task_.reference.stride[0]) {
-    __builtin_prefetch(s);
-    __builtin_prefetch(r);
-  }
+// A cache line holds the rows of four macroblocks of luma, of eight of chroma. Those of the next ones are asked for
+// while these are worked on, a few at each, as no hardware sees sixteen rows coming and none takes all of them at once.
+// Inlined by force: compilers leave out calls of functions that do nothing but this.
+PAC_INLINE void prefetch_rows(const Planes& planes, int plane, int column, int row, int first, int count) {
+  const ptrdiff_t stride = planes.stride[plane];
+  const uint8_t* const at = planes.at(plane, column, row) + first * stride;
+  for (int y = 0; y < count; ++y) __builtin_prefetch(at + y * stride);
 }
+PAC_INLINE void prefetch_next(const Planes& planes, const PictureTask& task, int column, int row) {
+  const auto prefetch = [&](int plane, int sharing, int rows) __attribute__((always_inline)) {
+    const int turn = column & (sharing - 1), next = column - turn + sharing;
+    if (next < task.columns)
+      prefetch_rows(planes, plane, next, row, turn * rows, rows);
+    else if (row + 1 < task.rows)
+      prefetch_rows(planes, plane, 0, row + 1, turn * rows, rows);
+  };
+  prefetch(0, 4, 4), prefetch(1, 8, 1), prefetch(2, 8, 1);
+}
+
+}  // namespace
 
 FastCoder::Outcome FastCoder::code(int column, int row) {
   column_ = column;
   row_ = row;
-  if (column % 4 == 0 && column + 4 < task_.columns) prefetch_luma();
+  prefetch_next(task_.source, task_, column, row);
+  prefetch_next(task_.reference, task_, column, row);
   uint32_t quarters[4];
   motion_.sad16_quarters(source(), task_.source.stride[0], task_.reference.at(0, column_, row_),
                          task_.reference.stride[0], quarters);
@@ -122,6 +132,7 @@ FastCoder::Outcome FastCoder::code_intra(int column, int row) {
   alignas(64) static constexpr uint8_t kZeros[16] = {};
   column_ = column;
   row_ = row;
+  if (task_.type == PictureType::I) prefetch_next(task_.source, task_, column, row);
   start_blocks();
   PredictedSamples samples{};
   for (const int plane : {0, 1, 2}) {

@@ -20,7 +20,6 @@ class FastCoder : private MacroblockPlace {
   MotionVector vector() const { return vector_; }
 
  private:
-  void prefetch_luma() const;
   bool stays(const uint32_t (&quarters)[4]) const;
   void keep_reference();
   MotionVector search(uint32_t still_sad, uint32_t& sad) const;
