@@ -117,6 +117,34 @@ __m256i difference_row(const uint8_t* source, const uint8_t* prediction) {
   return difference_row(load(source), load(prediction));
 }
 
+// Between four samples: sixteen rows in eight registers, a row and the eighth below it in the halves.
+struct AveragedPair {
+  __m256i mean, odd;
+};
+PAC_INLINE __m256i rows_8_apart(const uint8_t* samples, ptrdiff_t stride) {
+  return join(load(samples), load(samples + 8 * stride));
+}
+PAC_INLINE AveragedPair average_right_pair(const uint8_t* samples, ptrdiff_t stride) {
+  const __m256i a = rows_8_apart(samples, stride), b = rows_8_apart(samples + 1, stride);
+  return {_mm256_avg_epu8(a, b), _mm256_xor_si256(a, b)};
+}
+uint32_t sad16_between_four(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                            ptrdiff_t reference_stride) {
+  const __m256i ones = _mm256_set1_epi8(1);
+  __m256i sum = _mm256_setzero_si256();
+  AveragedPair above = average_right_pair(reference, reference_stride);
+  for (int y = 0; y < 8; ++y) {
+    const AveragedPair below = average_right_pair(reference + (y + 1) * reference_stride, reference_stride);
+    const __m256i mean = _mm256_avg_epu8(above.mean, below.mean);  // as average_4() does it
+    const __m256i rounded =
+        _mm256_and_si256(_mm256_or_si256(above.odd, below.odd), _mm256_xor_si256(above.mean, below.mean));
+    const __m256i prediction = _mm256_sub_epi8(mean, _mm256_and_si256(rounded, ones));
+    sum = _mm256_add_epi32(sum, _mm256_sad_epu8(prediction, rows_8_apart(source + y * source_stride, source_stride)));
+    above = below;
+  }
+  return low_32(sum_of_halves(_mm_add_epi32(_mm256_castsi256_si128(sum), _mm256_extracti128_si256(sum, 1))));
+}
+
 uint32_t satd16(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* prediction,
                 ptrdiff_t prediction_stride) {
   uint32_t total = 0;
@@ -209,6 +237,7 @@ void idct(const int16_t* coefficients, size_t n_blocks, uint8_t* const* samples,
 
 void fill_motion_avx2(MotionKernels& table) {
   fill_shared(table);
+  table.sad16_half[3] = sad16_between_four;
   table.satd16 = satd16;
   table.fdct_macroblock = fdct_macroblock<false>;
   table.fdct_reaching = fdct_macroblock<true>;
