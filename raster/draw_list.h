@@ -116,6 +116,8 @@ class DrawList {
   void fill_candidate(const FrameInput& input, uint32_t face_number, const uint32_t vertices[3], Chunk& chunk,
                       Candidate& out) const;
   static uint32_t kept_normals(const FrameInput& input, const SetupMasks& masks, const Chunk& chunk);
+  bool attach_colors(const FrameInput& input, const SetupMasks& masks, uint32_t kept, RasterTriangle* stored,
+                     Chunk& chunk) const;
   bool attach_plain(const FrameInput& input, const MeshTriangle& pending, uint32_t front, bool keeps_normals,
                     Arena<float>& arena, RasterTriangle& triangle) const;
   const float* plain_record(const FrameInput& input, int rendering, const MeshTriangle& pending, uint32_t front,

@@ -160,10 +160,60 @@ inline bool DrawList::attach_plain(const FrameInput& input, const MeshTriangle& 
   return true;
 }
 
+// What attach() does for drawn triangles of one material whose records hold colors alone, in one rendering, those of
+// corners lit before if at all. False: they are not that, and nothing is done.
+bool DrawList::attach_colors(const FrameInput& input, const SetupMasks& masks, uint32_t kept, RasterTriangle* stored,
+                             Chunk& chunk) const {
+  if (input.previous_clip != nullptr || input.surfaces[1] != nullptr || !input.wants_attributes) return false;
+  const uint32_t material = chunk.pending[std::countr_zero(masks.drawn)].material;
+  const Surface& surface = (*input.surfaces[0])[material];
+  const bool is_lit = surface.lit != Surface::Lit::no;
+  if (surface.layout.count != 3 || (is_lit && kept != masks.drawn)) return false;
+  CornerNumbers corners;
+  uint32_t faces[kSetupLanes];
+  int n = 0;
+  bool alike = true;
+  for (uint32_t left = masks.drawn; left != 0; left &= left - 1, ++n) {
+    const int lane = std::countr_zero(left);
+    const MeshTriangle& triangle = chunk.pending[lane];
+    const uint32_t front = masks.front >> lane & 1;
+    alike = alike && triangle.material == material;
+    corners[0][n] = triangle.vertices[0];
+    corners[1][n] = triangle.vertices[1 + front];
+    corners[2][n] = triangle.vertices[2 - front];
+    faces[n] = triangle.face;
+  }
+  if (!alike) return false;
+  const LitVertices& lit = lit_[0];
+  if (is_lit)
+    for (int k = 0; k < n; ++k)
+      if (!lit.has(corners[0][k], material) || !lit.has(corners[1][k], material) || !lit.has(corners[2][k], material))
+        return false;
+  for (int k = n; k < kSetupLanes; ++k)
+    for (auto& corner : corners) corner[k] = corner[0];
+  float* record = chunk.attributes.allocate(9 * static_cast<size_t>(n));
+  if (is_lit)
+    input.kernels->front.lit_records(n, corners, lit.colors(), lit.stride(), record);
+  else
+    input.kernels->front.color_records(n, corners, input.mesh->vertices.data()->position,
+                                       sizeof(Vertex) / sizeof(float), surface.mean, record);
+  for (int k = 0; k < n; ++k, record += 9) {
+    RasterTriangle& triangle = *stored++;
+    triangle.id = faces[k] + 1;
+    triangle.state[0] = surface.batch;
+    triangle.state[1] = 0;
+    triangle.attributes[0] = record;
+    triangle.attributes[1] = triangle.attributes[2] = nullptr;
+    list_in_tiles(input, triangle, chunk);
+  }
+  return true;
+}
+
 // Attributes of the drawn triangles of those that wait, and their tiles.
 void DrawList::attach(const FrameInput& input, const SetupMasks& masks, RasterTriangle* stored, Chunk& chunk) const {
   Candidate candidate;
   const uint32_t kept = kept_normals(input, masks, chunk);
+  if (attach_colors(input, masks, kept, stored, chunk)) return;
   for (uint32_t left = masks.drawn; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     const MeshTriangle& triangle = chunk.pending[lane];

@@ -22,8 +22,15 @@ class LitVertices {
   // What light_points() gives a vertex under a material by its own normal, or null: light it there. Four floats are
   // readable.
   const float* find(uint32_t vertex, uint32_t material) const {
-    return material < n_materials_ && materials_[vertex] == material ? &colors_[stride_ * size_t{vertex}] : nullptr;
+    return has(vertex, material) ? &colors_[stride_ * size_t{vertex}] : nullptr;
   }
+
+  // Whether find() is not null; then it is colors() + stride() * vertex.
+  bool has(uint32_t vertex, uint32_t material) const {
+    return material < n_materials_ && materials_[vertex] == material;
+  }
+  const float* colors() const { return colors_.data(); }
+  size_t stride() const { return stride_; }
 
  private:
   void assign_materials(const Mesh& mesh, const std::vector<Surface>& surfaces);

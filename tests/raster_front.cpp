@@ -230,6 +230,52 @@ TEST_CASE("faces_eye and gather_vertices: every instruction set gives the scalar
   CHECK(facing_count >= 100 * set_count);
 }
 
+TEST_CASE("color_records and lit_records: nine floats a triangle, the same on every instruction set, nothing beyond") {
+  constexpr int kVertices = 40, kStride = 9;
+  for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+    Random random(79);
+    for (int round = 0; round < 300; ++round) {
+      std::vector<float> vertices(kStride * kVertices);
+      for (int i = 0; i < kVertices; ++i) {
+        float* const vertex = &vertices[static_cast<size_t>(kStride * i)];
+        for (int c = 0; c < 8; ++c) vertex[c] = random.between(-300, 300);
+        const uint32_t color = random.bits();
+        std::memcpy(vertex + 8, &color, 4);
+      }
+      CornerNumbers corners;
+      for (auto& corner : corners)
+        for (uint32_t& number : corner) number = random.bits() % kVertices;
+      const float mean[3] = {random.between(0, 1), random.between(0, 1), 1};
+      const int n = 1 + static_cast<int>(random.bits() % kSetupLanes);
+      const auto records_of = [&](const Kernels& kernels, bool lit) {
+        std::vector<float> records(9 * kSetupLanes + 8, 7.0f);
+        if (lit)
+          kernels.front.lit_records(n, corners, vertices.data(), kStride, records.data());
+        else
+          kernels.front.color_records(n, corners, vertices.data(), kStride, mean, records.data());
+        return records;
+      };
+      for (const bool lit : {false, true}) {
+        const std::vector<float> records = records_of(table, lit);
+        REQUIRE(records == records_of(scalar, lit));
+        REQUIRE(std::all_of(records.begin() + 9 * n, records.end(), [](float f) { return f == 7.0f; }));
+        const auto color = [&](int corner, int k, int c) {
+          const float* const vertex = &vertices[kStride * corners[corner][k]];
+          if (lit) return vertex[c];
+          return static_cast<float>(reinterpret_cast<const uint8_t*>(vertex + 8)[c]) * mean[c];
+        };
+        const int last = n - 1;
+        for (int c = 0; c < 3; ++c) {
+          const float* const record = &records[static_cast<size_t>(9 * last + 3 * c)];
+          REQUIRE(record[0] == color(0, last, c));
+          REQUIRE(record[1] == color(1, last, c) - record[0]);
+          REQUIRE(record[2] == color(2, last, c) - record[0]);
+        }
+      }
+    }
+  });
+}
+
 TEST_CASE("triangles that setup leaves out have no sample inside; tiny ones that it keeps cover one") {
   for (const Isa isa : {Isa::scalar, best_isa()}) {
     Random random(47);

@@ -58,6 +58,9 @@ struct MeshTriangle {
   uint32_t face, material;
 };
 
+// The corners of kSetupLanes triangles, by their numbers among the vertices, corner i of triangle k at [i][k].
+using CornerNumbers = uint32_t[3][kSetupLanes];
+
 // Planar triangles: width and height together are at least so many 1/256 pixel, as planes do not pay for fewer pixels,
 // and area2 times the least of the corners' w is at least 1 / kPlanarRatio of their product.
 constexpr float kSmallestPlanar = 8 * 256, kPlanarRatio = 128;
@@ -99,6 +102,14 @@ struct FrontKernels {
   // Rows of kBatchLanes for TileKernels::light() from n <= kBatchLanes such vertices, rounded up to 8 (the last one is
   // repeated): 3 of normals, 3 of positions and 3 of colors, the first three of four bytes 8 floats after the position.
   void (*gather_vertices)(int n, const float* const* vertices, float* normal, float* position, float* color);
+
+  // Records of color alone of n <= kSetupLanes triangles, nine floats each, one after the other: a0, a1 - a0, a2 - a0
+  // of each of three colors. All lanes of `corners` are numbers of vertices. color_records: the first three of four
+  // bytes at float 8 of vertices + i * stride, times `mean`; lit_records: of four floats at lit + i * stride the first
+  // three.
+  void (*color_records)(int n, const CornerNumbers& corners, const float* vertices, size_t stride, const float mean[3],
+                        float* records);
+  void (*lit_records)(int n, const CornerNumbers& corners, const float* lit, size_t stride, float* records);
 };
 
 // front_scalar.cpp; the others stand beside the tile kernels, whose operations they use.

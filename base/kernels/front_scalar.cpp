@@ -84,6 +84,30 @@ void gather_vertices(int n, const float* const* vertices, float* normal, float* 
   }
 }
 
+void color_records(int n, const CornerNumbers& corners, const float* vertices, size_t stride, const float mean[3],
+                   float* records) {
+  for (int k = 0; k < n; ++k, records += 9) {
+    uint8_t bytes[3][4];
+    for (int i = 0; i < 3; ++i) std::memcpy(bytes[i], vertices + stride * corners[i][k] + 8, 4);
+    for (int c = 0; c < 3; ++c) {
+      const float a0 = static_cast<float>(bytes[0][c]) * mean[c];
+      records[3 * c] = a0;
+      for (int i = 1; i < 3; ++i) records[3 * c + i] = static_cast<float>(bytes[i][c]) * mean[c] - a0;
+    }
+  }
+}
+
+void lit_records(int n, const CornerNumbers& corners, const float* lit, size_t stride, float* records) {
+  for (int k = 0; k < n; ++k, records += 9) {
+    const float* const corner0 = lit + stride * corners[0][k];
+    for (int c = 0; c < 3; ++c) {
+      records[3 * c] = corner0[c];
+      for (int i = 1; i < 3; ++i)
+        records[3 * c + i] = lit[stride * corners[i][k] + static_cast<size_t>(c)] - corner0[c];
+    }
+  }
+}
+
 }  // namespace
 
 void fill_front_scalar(FrontKernels& table) {
@@ -92,6 +116,8 @@ void fill_front_scalar(FrontKernels& table) {
   table.keeps_normals = keeps_normals;
   table.faces_eye = faces_eye;
   table.gather_vertices = gather_vertices;
+  table.color_records = color_records;
+  table.lit_records = lit_records;
 }
 
 }  // namespace pac
