@@ -121,7 +121,7 @@ Result<RenderStats> DrawList::build(const FrameInput& input, ThreadPool& pool) {
 void DrawList::process(const FrameInput& input, size_t first_face, size_t last_face, Chunk& chunk) {
   chunk.triangles.reset();
   chunk.attributes.reset();
-  chunk.pairs.clear();
+  chunk.tiles.reset(static_cast<size_t>(tiles_x_) * static_cast<size_t>(tiles_y_));
   chunk.n_pending = 0;
   chunk.drop_back = chunk.whole = 0;
   chunk.normal_of = UINT32_MAX;
@@ -143,7 +143,6 @@ void DrawList::process(const FrameInput& input, size_t first_face, size_t last_f
       process_polygon(input, number, chunk);
   }
   flush(input, chunk);
-  fill_bins(chunk);
 }
 
 // What process() does for valid triangles without corners beyond the clipping planes, which is most of them, from
@@ -303,33 +302,14 @@ void DrawList::process_clipped(const FrameInput& input, const MeshTriangle& tria
 }
 
 void DrawList::list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const {
-  for_each_tile(triangle, tiles_x_, input.hull, [&](int tile) {
-    chunk.pairs.push_back({static_cast<uint32_t>(tile), &triangle});
-  });
+  for_each_tile(triangle, tiles_x_, input.hull,
+                [&](int tile) { chunk.tiles.append(static_cast<size_t>(tile), &triangle); });
   ++chunk.stats.triangles_drawn;
 }
 
-// Counting sort of the (tile, triangle) pairs by tile; stable, so the order of the scene stays.
-void DrawList::fill_bins(Chunk& chunk) const {
-  const size_t n_tiles = static_cast<size_t>(tiles_x_) * static_cast<size_t>(tiles_y_);
-  chunk.bin_start.assign(n_tiles + 2, 0);
-  for (const TilePair& pair : chunk.pairs) ++chunk.bin_start[pair.tile + 2];
-  for (size_t i = 2; i < n_tiles + 2; ++i) chunk.bin_start[i] += chunk.bin_start[i - 1];
-  chunk.bins.resize(chunk.pairs.size());
-  for (const TilePair& pair : chunk.pairs) chunk.bins[chunk.bin_start[pair.tile + 1]++] = pair.triangle;
-}
-
-std::span<const RasterTriangle* const> DrawList::triangles_of(int tile,
-                                                              std::vector<const RasterTriangle*>& memory) const {
-  const auto t = static_cast<size_t>(tile);
-  const auto part = [&](const Chunk& chunk) {
-    return std::span<const RasterTriangle* const>(chunk.bins.data() + chunk.bin_start[t],
-                                                  chunk.bins.data() + chunk.bin_start[t + 1]);
-  };
-  if (n_chunks_ == 1) return part(chunks_[0]);
-  memory.clear();
-  for (size_t c = 0; c < n_chunks_; ++c) memory.insert(memory.end(), part(chunks_[c]).begin(), part(chunks_[c]).end());
-  return memory;
+void DrawList::triangles_of(int tile, std::vector<const RasterTriangle*>& out) const {
+  out.clear();
+  for (size_t c = 0; c < n_chunks_; ++c) chunks_[c].tiles.copy(static_cast<size_t>(tile), out);
 }
 
 }  // namespace pac::raster

@@ -13,6 +13,7 @@
 #include "raster/renderer.h"
 #include "raster/setup.h"
 #include "raster/surface.h"
+#include "raster/tile_lists.h"
 #include "raster/triangulate.h"
 
 namespace pac::raster {
@@ -76,15 +77,10 @@ class DrawList {
 
   int tiles_x() const { return tiles_x_; }
   int tiles_y() const { return tiles_y_; }
-  // The triangles that may touch the tile, in scene order; they may stand in `memory`.
-  [[nodiscard]] std::span<const RasterTriangle* const> triangles_of(int tile,
-                                                                    std::vector<const RasterTriangle*>& memory) const;
+  // The triangles that may touch the tile, in scene order.
+  void triangles_of(int tile, std::vector<const RasterTriangle*>& out) const;
 
  private:
-  struct TilePair {
-    uint32_t tile;
-    const RasterTriangle* triangle;
-  };
   // A contiguous part of the faces, worked on by one thread.
   struct Chunk {
     Arena<RasterTriangle> triangles;
@@ -93,9 +89,7 @@ class DrawList {
     uint32_t drop_back = 0;             // bit k: the back of pending[k] is not drawn
     uint32_t whole = 0;                 // bit k: pending[k] is its face
     int n_pending = 0;
-    std::vector<TilePair> pairs;              // in order
-    std::vector<uint32_t> bin_start;          // per tile, and one past the end: where its part of `bins` starts
-    std::vector<const RasterTriangle*> bins;  // by tile, in order
+    TileLists tiles;
     PolygonCutter cutter;
     uint32_t normal_of = UINT32_MAX;  // the face whose normal is in `normal`
     FaceNormal normal{};
@@ -123,7 +117,6 @@ class DrawList {
   const float* plain_record(const FrameInput& input, int rendering, const MeshTriangle& pending, uint32_t front,
                             bool keeps_normals, Arena<float>& arena) const;
   void list_in_tiles(const FrameInput& input, const RasterTriangle& triangle, Chunk& chunk) const;
-  void fill_bins(Chunk& chunk) const;
 
   const FaceNormal& normal_of(const Mesh& mesh, uint32_t face_number, Chunk& chunk) const;
 

@@ -35,7 +35,7 @@ void TilePainter::paint(const PaintInput& input, int tile) {
   const int tile_x = tile % input.draw_list->tiles_x(), tile_y = tile / input.draw_list->tiles_x();
   const Area area{tile_x * kTileSize, tile_y * kTileSize, std::min(kTileSize, input.width - tile_x * kTileSize),
                   std::min(kTileSize, input.height - tile_y * kTileSize)};
-  triangles_ = input.draw_list->triangles_of(tile, listed_);
+  input.draw_list->triangles_of(tile, triangles_);
   if (triangles_.empty()) return write_background(input, area);
   // Each row is on a page of its own, where the processor by itself sees no pattern: it fetches them meanwhile.
   prefetch(input.color[0], area.x, area.y, area.width, area.height);

@@ -110,11 +110,10 @@ class TilePainter {
   BatchShader shader_;
   // Of tiles with masked or transparent triangles.
   bool has_masked_ = false, has_blended_ = false;
-  alignas(64) float own_depth_[kTilePixels];          // of one triangle alone, where it is nearer than depth_ ...
-  alignas(64) uint32_t own_ids_[kTilePixels];         // ... and 1 there
-  alignas(64) uint16_t colors_[3 * kTilePixels];      // of one sample
-  std::span<const RasterTriangle* const> triangles_;  // that may touch the tile
-  std::vector<const RasterTriangle*> listed_;
+  alignas(64) float own_depth_[kTilePixels];      // of one triangle alone, where it is nearer than depth_ ...
+  alignas(64) uint32_t own_ids_[kTilePixels];     // ... and 1 there
+  alignas(64) uint16_t colors_[3 * kTilePixels];  // of one sample
+  std::vector<const RasterTriangle*> triangles_;  // that may touch the tile
   alignas(64) uint32_t whole_[kTilePixels];
   alignas(64) float near_z_[kTilePixels], far_z_[kTilePixels];
   alignas(64) uint32_t grid_ids_[kTilePixels * kGridSamples];

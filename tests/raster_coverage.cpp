@@ -178,8 +178,9 @@ TEST_CASE("clipping at the near plane and the guard band opens no cracks and cov
     REQUIRE(list.build(input, pool).ok());
     HitCounter hits(kSide, pattern);
     for (int tile = 0; tile < list.tiles_x() * list.tiles_y(); ++tile) {
-      std::vector<const RasterTriangle*> memory;
-      for (const RasterTriangle* t : list.triangles_of(tile, memory))
+      std::vector<const RasterTriangle*> listed;
+      list.triangles_of(tile, listed);
+      for (const RasterTriangle* t : listed)
         hits.add(input.kernels->tile, *t, tile % list.tiles_x(), tile / list.tiles_x());
     }
     REQUIRE(hits.samples_hit(1) == hits.samples());
