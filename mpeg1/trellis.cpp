@@ -1,5 +1,6 @@
 #include "mpeg1/trellis.h"
 
+#include <array>
 #include <bit>
 
 #include "base/kernels/block_kernels.h"
@@ -9,7 +10,8 @@ namespace pac::mpeg1 {
 namespace {
 
 int magnitude_of(int value) {
-  return value < 0 ? -value : value;
+  const int sign = value >> 31;
+  return (value ^ sign) - sign;
 }
 
 int64_t squared(int64_t value) {
@@ -30,19 +32,32 @@ int saved_at_first(const BlockToQuantize& block, int position, int level) {
   return !block.is_intra && position == block.first_position && level == 1 ? 1 : 0;
 }
 
-// A way to code everything up to a position that ends with a level there, for going back along it.
-struct Path {
-  int16_t previous;  // index of the path before; 0: nothing was coded before
-  int16_t position, level;
-  int16_t bits;  // of all its codes: at most 64 * 28
+// Ways to code everything up to a position that ends with a level there, for going back along them.
+struct Paths {
+  int count = 1;         // the first one: nothing is coded
+  uint8_t previous[65];  // index of the path before
+  uint8_t position[65];
+  int16_t level[65];
+
+  int add(int before, int at, int coded) {
+    const auto i = static_cast<size_t>(count);
+    previous[i] = static_cast<uint8_t>(before);
+    position[i] = static_cast<uint8_t>(at);
+    level[i] = static_cast<int16_t>(coded);
+    return count++;
+  }
 };
 
-// A path that later levels may follow. Its distortion is cost - lambda * bits.
+// A path that later levels may follow. Costs in the search are times kKeys; its distortion is cost - lambda * bits.
 struct LivePath {
   int64_t cost;  // minus the energy of positions up to and with this one
   int position;
-  int path;
+  int path, bits;
 };
+
+// One of the ways to end at a position: which live path it goes on from, and with which of two levels. Added to its
+// cost it makes a key: the least key is that of the least cost, the first of several.
+constexpr int64_t kKeys = 256, kSecond = 128;
 
 // Coding a level at a position: bits after each run, and distortion less that of zero.
 constexpr int64_t kNever = int64_t{1} << 60;
@@ -51,24 +66,17 @@ struct Choice {
   int64_t gained;
 };
 template <bool kIsIntra>
-inline Choice make_choice(int level, int weight, int c) {
+inline Choice make_choice(const uint8_t* bits, int level, int weight, int c) {
   const int r = 8 * (kIsIntra ? reconstruct_intra(level, weight) : reconstruct_non_intra(level, weight));
-  return {bits_of_level(level).data(), r != 0 ? r * (r - 2 * c) : kNever};  // decoders disagree about 0
+  return {bits, r != 0 ? kKeys * (r * (r - 2 * c)) : kNever};  // decoders disagree about 0
 }
 
-// The cheapest of the paths that end at a position, with one of one or two levels there.
-struct Step {
-  int64_t cost = kNever;
-  int from = 0, bits = 0;
-  bool is_second = false;
-};
-inline void take_cheaper(const LivePath* live, int n_live, int position, int64_t lambda, const Choice& choice,
-                         bool is_second, Step& best) {
-  for (int i = 0; i < n_live; ++i) {
-    const int bits = choice.bits[position - live[i].position - 1];
-    const int64_t cost = live[i].cost + choice.gained + lambda * bits;
-    if (cost < best.cost) best = {cost, i, bits, is_second};
-  }
+// The key of going on from a live path with that level. lambda: times kKeys.
+inline int64_t key_of(const LivePath& path, int position, int64_t lambda, const Choice& choice, int64_t which) {
+  return path.cost + lambda * choice.bits[position - path.position - 1] + (choice.gained + which);
+}
+inline int64_t lesser(int64_t a, int64_t b) {
+  return b < a ? b : a;
 }
 
 // A path at given prices: its distortion is less the energy, cost and bits are times kBit.
@@ -78,12 +86,12 @@ struct Priced {
 };
 
 // Leaves the levels of a path, and nothing else.
-void keep_path(const Path* paths, int chosen, int16_t* levels, uint64_t& nonzero) {
+void keep_path(const Paths& paths, int chosen, int16_t* levels, uint64_t& nonzero) {
   uint64_t kept = 0;
-  for (int i = chosen; i != 0; i = paths[i].previous) {
-    const Path& path = paths[i];
-    levels[path.position] = levels[path.position] < 0 ? static_cast<int16_t>(-path.level) : path.level;
-    kept |= uint64_t{1} << path.position;
+  for (auto i = static_cast<size_t>(chosen); i != 0; i = paths.previous[i]) {
+    const int position = paths.position[i], sign = levels[position] >> 15;  // without a branch: signs have no pattern
+    levels[position] = static_cast<int16_t>((paths.level[i] ^ sign) - sign);
+    kept |= uint64_t{1} << position;
   }
   for (uint64_t dropped = nonzero & ~kept; dropped != 0; dropped &= dropped - 1) levels[std::countr_zero(dropped)] = 0;
   nonzero = kept;
@@ -95,65 +103,77 @@ int size_price(const BlockPrices& prices, int position, int level) {
   return prices.size[position][kSizes - 1] + (level - kSizes) * prices.step[position];
 }
 
-// The cheapest way to end at a position: with the level there, or the next smaller one unless that takes away more than
-// its code can be shorter. A cost of kNever or about: there is none.
-template <bool kIsIntra>
-inline Step best_step(const BlockToQuantize& block, const LivePath* live, int n_live, int position, int level) {
-  const int c = coefficient(block, position), weight = block.weight[position];
-  const int64_t lambda = block.lambda;
-  const bool saves = !kIsIntra && position == block.first_position;  // where the level is 1
-  Choice first = make_choice<kIsIntra>(level, weight, c);
-  if (saves && level == 1) first.gained -= lambda;
-  Step best;
-  take_cheaper(live, n_live, position, lambda, first, false, best);
-  if (level > 1) {
-    Choice second = make_choice<kIsIntra>(level - 1, weight, c);
-    if (saves && level == 2) second.gained -= lambda;
-    if (second.gained < first.gained + lambda * kWriting.longer_level[row_of_level(level)])
-      take_cheaper(live, n_live, position, lambda, second, true, best);
-  }
-  if (saves && level - (best.is_second ? 1 : 0) == 1) --best.bits;
-  return best;
-}
+// Bits of level 1 as dct_coeff_first: one less after run 0 [table B.5c].
+constexpr std::array<uint8_t, 64> kFirstOne = [] {
+  std::array<uint8_t, 64> bits{};
+  bits[0] = 2;
+  return bits;
+}();
 
 template <bool kIsIntra>
 BlockCost quantize(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
-  const int64_t lambda = block.lambda;
-  Path paths[65];
+  const int64_t lambda = kKeys * block.lambda;
+  Paths paths;
   // Costs grow from path to path: one that a later one beats is dropped, as a longer run never has a shorter code
-  // worth speaking of. One that costs more than shorter runs can save is not even begun.
-  LivePath live[65];
-  int n_paths = 0, n_live = 0;
-  paths[n_paths++] = {0, -1, 0, 0};
-  live[n_live++] = {0, block.first_position - 1, 0};
+  // worth speaking of. One that costs more than shorter runs can save is not even begun. Mostly one is left: the last
+  // one stands apart from those before it.
+  LivePath before[65], last{0, block.first_position - 1, 0, 0};
+  int n_before = 0;
+  const uint8_t* const ones = bits_of_level(1).data();
+  const bool first_is_first = !kIsIntra && (nonzero >> block.first_position & 1) != 0;
+  const uint8_t* next_ones = first_is_first ? kFirstOne.data() : ones;
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask), level = magnitude_of(levels[position]);
-    const Step best = best_step<kIsIntra>(block, live, n_live, position, level);
-    if (best.cost >= kNever / 2) continue;
-    const int previous = live[best.from].path;
-    while (n_live > 0 && live[n_live - 1].cost >= best.cost) --n_live;
-    if (n_live > 0) {
-      const LivePath& cheaper = live[n_live - 1];
-      if (best.cost >= cheaper.cost + lambda * kWriting.longer_run[static_cast<size_t>(position - cheaper.position)])
-        continue;
+    const int c = coefficient(block, position), weight = block.weight[position];
+    const uint8_t* const these_ones = next_ones;
+    next_ones = ones;
+    const auto bits_of = [&](int of) { return of == 1 ? these_ones : bits_of_level(of).data(); };
+    const auto least_key = [&](const Choice& choice, int64_t which, int64_t least) {
+      for (int i = 0; i < n_before; ++i) least = lesser(least, key_of(before[i], position, lambda, choice, which + i));
+      return lesser(least, key_of(last, position, lambda, choice, which + n_before));
+    };
+    const Choice first = make_choice<kIsIntra>(bits_of(level), level, weight, c);
+    Choice chosen = first;
+    int64_t key = least_key(first, 0, kNever / 2);
+    if (level > 1) {
+      const Choice second = make_choice<kIsIntra>(bits_of(level - 1), level - 1, weight, c);
+      // Nothing is gained where less is saved than its code can be shorter by.
+      const int shorter = kWriting.longer_level[row_of_level(level)] + (these_ones != ones && level == 2 ? 1 : 0);
+      if (second.gained < first.gained + lambda * shorter) key = least_key(second, kSecond, key);
+      if ((key & kSecond) != 0) chosen = second;
     }
-    live[n_live++] = {best.cost, position, n_paths};
-    paths[n_paths++] = {static_cast<int16_t>(previous), static_cast<int16_t>(position),
-                        static_cast<int16_t>(level - (best.is_second ? 1 : 0)),
-                        static_cast<int16_t>(paths[previous].bits + best.bits)};
+    if (key >= kNever / 2) continue;
+    const int i = static_cast<int>(key & (kSecond - 1)), is_second = (key & kSecond) != 0 ? 1 : 0;
+    const LivePath& from = i == n_before ? last : before[i];
+    const int64_t cost = key & -kKeys;
+    const int from_path = from.path, bits = from.bits + chosen.bits[position - from.position - 1];
+    bool any = true;  // of the live paths is left
+    while (any && last.cost >= cost) {
+      any = n_before > 0;
+      if (any) last = before[--n_before];
+    }
+    if (any) {
+      if (cost >= last.cost + lambda * kWriting.longer_run[static_cast<size_t>(position - last.position)]) continue;
+      before[n_before++] = last;
+    }
+    last = {cost, position, paths.add(from_path, position, level - is_second), bits};
   }
   // Where to end: the first path that codes something is the cheapest one; or nothing at all.
+  before[n_before++] = last;
+  const int first = before[0].path == 0 ? 1 : 0;
   const int end_bits = kEndOfBlock.length;
-  const int first = live[0].path == 0 ? 1 : 0;
   BlockCost result;
   result.distortion = result.energy = energy(block);
   result.bits = kIsIntra ? end_bits : 0;
   int chosen = 0;
-  const int64_t cost = first < n_live ? live[first].cost : kNever;
-  if (cost + block.lambda * end_bits < block.lambda * result.bits) {
-    chosen = live[first].path;
-    result.distortion += cost - block.lambda * paths[chosen].bits;
-    result.bits = paths[chosen].bits + end_bits;
+  if (first < n_before) {
+    const LivePath& cheapest = before[first];
+    const int64_t cost = cheapest.cost / kKeys;
+    if (cost + block.lambda * end_bits < block.lambda * result.bits) {
+      chosen = cheapest.path;
+      result.distortion += cost - block.lambda * cheapest.bits;
+      result.bits = cheapest.bits + end_bits;
+    }
   }
   result.bits *= kBit;
   keep_path(paths, chosen, levels, nonzero);
@@ -177,10 +197,9 @@ BlockCost quantize_trellis(const BlockToQuantize& block, int16_t* levels, uint64
 // taken from a path before it is known where it goes on, and the cheapest path so far is the only one to go on from.
 BlockCost quantize_priced(const BlockToQuantize& block, int16_t* levels, uint64_t& nonzero) {
   const BlockPrices& prices = *block.prices;
-  Path paths[65];
+  Paths paths;
   Priced costs[65], ended{block.lambda * (int64_t{prices.left_out} - prices.coded), 0, 0};
-  int n_paths = 1, from = 0, chosen = 0, zeros = 0, summed = block.first_position;
-  paths[0] = {0, -1, 0, 0};
+  int from = 0, chosen = 0, zeros = 0, summed = block.first_position;
   costs[0] = {};
   for (uint64_t mask = nonzero; mask != 0; mask &= mask - 1) {
     const int position = std::countr_zero(mask);
@@ -201,13 +220,12 @@ BlockCost quantize_priced(const BlockToQuantize& block, int16_t* levels, uint64_
     if (best_level == 0) continue;
     if (const int64_t cost = best.cost + block.lambda * prices.last[position]; cost < ended.cost) {
       ended = {cost, best.distortion, best.bits + prices.last[position]};
-      chosen = n_paths;
+      chosen = paths.count;
     }
     const int on = prices.more[position] - zeros - prices.zero[position];
-    paths[n_paths] = {static_cast<int16_t>(from), static_cast<int16_t>(position), static_cast<int16_t>(best_level), 0};
-    costs[n_paths] = {best.cost + block.lambda * on, best.distortion, best.bits + on};
-    if (costs[n_paths].cost < costs[from].cost) from = n_paths;
-    ++n_paths;
+    const int path = paths.add(from, position, best_level);
+    costs[path] = {best.cost + block.lambda * on, best.distortion, best.bits + on};
+    if (costs[path].cost < costs[from].cost) from = path;
   }
   BlockCost result;
   result.energy = energy(block);
