@@ -148,13 +148,23 @@ class RowCoder : private MacroblockPlace {
 
   // Leaves out the blocks that the macroblock is cheaper without: a smaller coded_block_pattern may have a longer code.
   void choose_pattern(Attempt& attempt) const {
-    int64_t lost[64] = {};  // distortion less bits' worth, of leaving these blocks out
+    constexpr int kMostBits = 6;                                 // by which codes of patterns differ [table B.3]
+    const int64_t most = worth(lambda(), kMostBits * kBit) + 1;  // each worth() is rounded
+    int64_t lost[64];                                            // distortion less bits' worth, of leaving these out
+    unsigned droppable = 0;                                      // blocks that may cost less than the code
+    lost[0] = 0;
+    for (unsigned left = attempt.pattern; left != 0; left &= left - 1) {
+      const unsigned bit = left & (0 - left);
+      const BlockCost& block = attempt.costs[5 - std::countr_zero(left)];
+      lost[bit] = block.energy - block.distortion - worth(lambda(), block.bits);
+      if (attempt.prices != nullptr || lost[bit] <= most) droppable |= bit;
+    }
+    if (droppable == 0) return;
     int64_t least = worth(lambda(), pattern_bits(attempt, attempt.pattern));
     unsigned chosen = 0;
-    for (unsigned dropped = 1; dropped < attempt.pattern; ++dropped) {
-      if ((dropped & ~unsigned{attempt.pattern}) != 0) continue;
-      const BlockCost& block = attempt.costs[5 - std::countr_zero(dropped)];
-      lost[dropped] = lost[dropped & (dropped - 1)] + block.energy - block.distortion - worth(lambda(), block.bits);
+    for (unsigned dropped = droppable & (0 - droppable); dropped != 0; dropped = (dropped - droppable) & droppable) {
+      if (dropped == attempt.pattern) break;
+      lost[dropped] = lost[dropped & (dropped - 1)] + lost[dropped & (0 - dropped)];
       const int64_t cost = lost[dropped] + worth(lambda(), pattern_bits(attempt, attempt.pattern ^ dropped));
       if (cost < least) least = cost, chosen = dropped;
     }
