@@ -146,6 +146,11 @@ class RowCoder : private MacroblockPlace {
     return (moves ? kBitsMotionCoded + vector_bits(attempt.vector) : kBitsCoded) * kBit;
   }
 
+  // What it takes at least beside the blocks: a code of a pattern has three bits or more. Not where prices are given.
+  int64_t least_header(const Attempt& attempt) const {
+    return worth(lambda(), std::min(header_bits(attempt, false), header_bits(attempt, true) + 3 * kBit));
+  }
+
   // Leaves out the blocks that the macroblock is cheaper without: a smaller coded_block_pattern may have a longer code.
   void choose_pattern(Attempt& attempt) const {
     constexpr int kMostBits = 6;                                 // by which codes of patterns differ [table B.3]
@@ -219,8 +224,8 @@ class RowCoder : private MacroblockPlace {
       const uint32_t distance = motion_.satd16(source(), task_.source.stride[0], attempt.prediction.y, 16);
       if (100 * uint64_t{distance} > kWorst * found.cost) return;
     }
-    attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
-    keep_if_better(settle_inter(attempt));
+    if (attempt_inter(task_.residual, task_.source, column_, row_, true, attempt, least_ - least_header(attempt)))
+      keep_if_better(settle_inter(attempt));
   }
   void keep_if_better(int64_t cost) {
     if (cost >= least_) return;
@@ -267,12 +272,13 @@ class RowCoder : private MacroblockPlace {
       start(attempt, wanted[i]);
       int64_t cost = 0;
       if (best.kind == MacroblockKind::intra) {
-        attempt_intra(task_.residual, task_.source, column_, row_, true, attempt);
+        if (!attempt_intra(task_.residual, task_.source, column_, row_, true, attempt, least_)) continue;
         cost = intra_cost(attempt);
       } else {
         attempt.vector = best.vector;
         attempt.prediction = best.prediction;
-        attempt_inter(task_.residual, task_.source, column_, row_, true, attempt);
+        const int64_t limit = least_ - least_header(attempt);
+        if (!attempt_inter(task_.residual, task_.source, column_, row_, true, attempt, limit)) continue;
         cost = settle_inter(attempt);
       }
       keep_if_better(cost + worth(lambda(), quantizer_bits(attempt)));
@@ -305,8 +311,8 @@ class RowCoder : private MacroblockPlace {
     if (may_be_intra(static_cast<uint64_t>(error), task_.effort == Effort::best ? 8000 : 2500)) {
       Attempt& attempt = attempts_[1 - best_];
       start(attempt, quantizer());
-      attempt_intra(task_.residual, task_.source, column_, row_, true, attempt);
-      keep_if_better(intra_cost(attempt));
+      if (attempt_intra(task_.residual, task_.source, column_, row_, true, attempt, least_))
+        keep_if_better(intra_cost(attempt));
     }
     if (task_.vary_quantizers) vary_quantizer();
     take(attempts_[best_]);

@@ -118,8 +118,8 @@ void copy_prediction(const MacroblockSamples& prediction, const Planes& target, 
 
 }  // namespace
 
-void attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
-                   Attempt& attempt) {
+bool attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt, int64_t limit) {
   attempt.kind = MacroblockKind::intra;
   attempt.vector = {};
   attempt.pattern = 0;
@@ -142,11 +142,13 @@ void attempt_intra(const ResidualTask& task, const Planes& source, int column, i
     const int64_t dc_error = block.dct[0] - 64 * dc;
     attempt.distortion += cost.distortion + dc_error * dc_error;
     attempt.bits += cost.bits;
+    if (attempt.distortion + worth(attempt.lambda, attempt.bits) >= limit && attempt.prices == nullptr) return false;
   }
+  return true;
 }
 
-void attempt_inter(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
-                   Attempt& attempt) {
+bool attempt_inter(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt, int64_t limit) {
   attempt.kind = MacroblockKind::inter;
   attempt.pattern = 0;
   attempt.distortion = attempt.energy = 0;
@@ -158,6 +160,7 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
   BlockToQuantize block;
   block.weight = task.non_intra->weight[attempt.quantizer];
   block.lambda = attempt.lambda;
+  int64_t least = 0;  // with or without each block
   for (int i = 0; i < kBlocks; ++i) {
     block.dct = attempt.dct + 64 * i;
     if (attempt.prices != nullptr) block.prices = attempt.prices->blocks + i;
@@ -167,7 +170,10 @@ void attempt_inter(const ResidualTask& task, const Planes& source, int column, i
     attempt.energy += cost.energy;
     attempt.distortion += cost.distortion;
     attempt.bits += cost.bits;
+    least += std::min(cost.energy, cost.distortion + worth(attempt.lambda, cost.bits));
+    if (least >= limit && attempt.prices == nullptr) return false;
   }
+  return true;
 }
 
 void commit(const ResidualTask& task, const Attempt& attempt, const Planes& target, int column, int row,

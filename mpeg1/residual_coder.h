@@ -47,12 +47,13 @@ struct ResidualTask {
 };
 
 // Both take `source` at (column, row), attempt.lambda and attempt.quantizer, which they raise where a level would have
-// no code. `with_cost`: distortion and bits are wanted.
-void attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
-                   Attempt& attempt);
+// no code. `with_cost`: distortion and bits are wanted. Both return whether they were not given up: they are where
+// Annex B's code lengths count and the cost is known to be `limit` or more before all blocks have levels.
+bool attempt_intra(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt, int64_t limit = INT64_MAX);
 // attempt.prediction holds the prediction. Blocks left out of the pattern count with their whole error.
-void attempt_inter(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
-                   Attempt& attempt);
+bool attempt_inter(const ResidualTask& task, const Planes& source, int column, int row, bool with_cost,
+                   Attempt& attempt, int64_t limit = INT64_MAX);
 
 // Takes the attempt: reconstructs it into `target`, appends its tokens, describes it in `macroblock`.
 void commit(const ResidualTask& task, const Attempt& attempt, const Planes& target, int column, int row,
