@@ -73,6 +73,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(front, keeps_normals),
     PAC_KERNEL(front, faces_eye),
     PAC_KERNEL(front, gather_vertices),
+    PAC_KERNEL(front, color_records),
+    PAC_KERNEL(front, lit_records),
     PAC_KERNEL(tile, rasterize),
     PAC_KERNEL(tile, rasterize_all),
     PAC_KERNEL(tile, rasterize_grid),
