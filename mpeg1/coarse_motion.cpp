@@ -10,8 +10,10 @@ namespace {
 constexpr int kReduction = 4;
 constexpr int kBlock = 8;                  // samples of the small pictures: 2 macroblocks
 constexpr uint32_t kStillSad = 96;         // of a block that needs no search: 1.5 a sample
+constexpr int kAcross = 20;                // offsets at once
 constexpr uint32_t kOffsetCost = 1;        // of a sample's distance from zero, so that flat blocks stay
 constexpr int kRowsAtOnce = 16;            // of the small pictures, that a thread makes
+constexpr size_t kReadable = 16;           // samples behind the small pictures
 constexpr int kHalfPels = 2 * kReduction;  // of a sample of the small pictures
 
 }  // namespace
@@ -22,34 +24,22 @@ CoarseMotion::CoarseMotion(int columns, int rows)
       block_columns_((columns + 1) / 2),
       block_rows_((rows + 1) / 2) {}
 
-// Means of 4 x 4 samples.
-void CoarseMotion::reduce(const Planes& frame, ThreadPool& pool, std::vector<uint8_t>& small) const {
-  small.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+void CoarseMotion::reduce(const Planes& frame, const MotionKernels& kernels, ThreadPool& pool,
+                          std::vector<uint8_t>& small) const {
+  small.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_) + kReadable);
+  static_assert(kReduction == 4);
   pool.for_each((height_ + kRowsAtOnce - 1) / kRowsAtOnce, [&](int64_t i) {
     const int first = kRowsAtOnce * static_cast<int>(i);
-    reduce_rows(frame, first, std::min(first + kRowsAtOnce, height_), small);
+    for (int y = first; y < std::min(first + kRowsAtOnce, height_); ++y)
+      kernels.means_4x4(frame.data[0] + kReduction * y * frame.stride[0], frame.stride[0], width_,
+                        small.data() + static_cast<size_t>(y) * static_cast<size_t>(width_));
   });
 }
 
-void CoarseMotion::reduce_rows(const Planes& frame, int first, int end, std::vector<uint8_t>& small) const {
-  std::vector<uint16_t> sums(static_cast<size_t>(kReduction * width_));
-  for (int y = first; y < end; ++y) {
-    const uint8_t* row = frame.data[0] + kReduction * y * frame.stride[0];
-    const ptrdiff_t stride = frame.stride[0];
-    for (size_t x = 0; x < sums.size(); ++x) {
-      const uint8_t* p = row + x;
-      sums[x] = static_cast<uint16_t>(p[0] + p[stride] + p[2 * stride] + p[3 * stride]);
-    }
-    uint8_t* out = small.data() + static_cast<size_t>(y) * static_cast<size_t>(width_);
-    for (size_t x = 0; x < static_cast<size_t>(width_); ++x)
-      out[x] = static_cast<uint8_t>((sums[4 * x] + sums[4 * x + 1] + sums[4 * x + 2] + sums[4 * x + 3] + 8) >> 4);
-  }
-}
-
-void CoarseMotion::start_picture(const Planes& source, ThreadPool& pool) {
+void CoarseMotion::start_picture(const Planes& source, const MotionKernels& kernels, ThreadPool& pool) {
   is_searched_ = false;
   has_source_ = width_ >= kBlock && height_ >= kBlock;
-  if (has_source_) reduce(source, pool, source_);
+  if (has_source_) reduce(source, kernels, pool, source_);
 }
 
 void CoarseMotion::finish_picture() {
@@ -68,23 +58,34 @@ CoarseMotion::Offset CoarseMotion::search_block(int column, int row, int reach, 
   const uint8_t* source = source_.data() + ptrdiff_t{y0} * width_ + x0;
   Offset best;
   uint32_t least = ~uint32_t{0};
-  const auto try_offset = [&](int x, int y) {
-    if (std::abs(x) > reach || std::abs(y) > reach) return;
-    if (x0 + x < 0 || y0 + y < 0 || x0 + x > width_ - kBlock || y0 + y > height_ - kBlock) return;
-    const uint8_t* reference = before_.data() + ptrdiff_t{y0 + y} * width_ + x0 + x;
-    const uint32_t sad = kernels.sad8(source, width_, reference, width_);
+  const auto at = [&](int x, int y) { return before_.data() + ptrdiff_t{y0 + y} * width_ + x0 + x; };
+  const auto take = [&](int x, int y, uint32_t sad) {
     const uint32_t cost = sad + kOffsetCost * static_cast<uint32_t>(std::abs(x) + std::abs(y));
     if (cost >= least) return;
     least = cost;
     best = {x, y};
+  };
+  const auto try_offset = [&](int x, int y) {
+    if (std::abs(x) > reach || std::abs(y) > reach) return;
+    if (x0 + x < 0 || y0 + y < 0 || x0 + x > width_ - kBlock || y0 + y > height_ - kBlock) return;
+    take(x, y, kernels.sad8(source, width_, at(x, y), width_));
   };
   try_offset(0, 0);
   const size_t index = static_cast<size_t>(row) * static_cast<size_t>(block_columns_) + static_cast<size_t>(column);
   if (!last_vectors_.empty())
     try_offset(last_vectors_[index].x_halfpel / kHalfPels, last_vectors_[index].y_halfpel / kHalfPels);
   if (least < kStillSad) return best;
-  for (int y = -reach; y <= reach; y += 2)
-    for (int x = -reach; x <= reach; x += 2) try_offset(x, y);
+  // Each second offset inside the picture.
+  const auto first_inside = [reach](int most) { return most >= reach ? -reach : -reach + (reach - most + 1) / 2 * 2; };
+  const int first_x = first_inside(x0), last_x = std::min(reach, width_ - kBlock - x0);
+  const int last_y = std::min(reach, height_ - kBlock - y0);
+  for (int y = first_inside(y0); y <= last_y; y += 2)
+    for (int x = first_x; x <= last_x; x += 2 * kAcross) {
+      uint32_t sads[kAcross];
+      const int n = std::min(kAcross, (last_x - x) / 2 + 1);
+      kernels.sad8_across(source, width_, at(x, y), width_, n, sads);
+      for (int k = 0; k < n; ++k) take(x + 2 * k, y, sads[k]);
+    }
   const Offset center = best;
   for (int i = 0; i < 9; ++i) try_offset(center.x + i % 3 - 1, center.y + i / 3 - 1);
   return best;
@@ -95,7 +96,7 @@ const MotionVector* CoarseMotion::search(const Planes* replaced, int f_code, con
   if (!has_source_ || (!has_before_ && replaced == nullptr)) return nullptr;
   if (is_searched_) return vectors_.data();
   if (replaced != nullptr) {
-    reduce(*replaced, pool, before_);
+    reduce(*replaced, kernels, pool, before_);
     has_before_ = true;
   }
   vectors_.resize(static_cast<size_t>(block_columns_) * static_cast<size_t>(block_rows_));

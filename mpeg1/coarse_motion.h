@@ -18,7 +18,7 @@ class CoarseMotion {
   CoarseMotion(int columns, int rows);
 
   // A new picture: of its frame, luma.
-  void start_picture(const Planes& source, ThreadPool& pool);
+  void start_picture(const Planes& source, const MotionKernels& kernels, ThreadPool& pool);
   // Its vectors relative to the frame before, or to `replaced`, within f_code's range. Once a picture; later calls do
   // nothing. Returns one for each 2 x 2 macroblocks, block_columns() a row, whole samples; null: there are none.
   const MotionVector* search(const Planes* replaced, int f_code, const MotionKernels& kernels, ThreadPool& pool);
@@ -30,8 +30,7 @@ class CoarseMotion {
   struct Offset {
     int x = 0, y = 0;  // samples of the small pictures
   };
-  void reduce(const Planes& frame, ThreadPool& pool, std::vector<uint8_t>& small) const;
-  void reduce_rows(const Planes& frame, int first, int end, std::vector<uint8_t>& small) const;
+  void reduce(const Planes& frame, const MotionKernels& kernels, ThreadPool& pool, std::vector<uint8_t>& small) const;
   Offset search_block(int column, int row, int reach, const MotionKernels& kernels) const;
 
   int width_, height_;  // of the small pictures

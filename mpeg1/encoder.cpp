@@ -96,7 +96,7 @@ Result<PictureReport> Encoder::State::add(const Frame420& frame, std::vector<uin
   if (const char* problem = problem_with_picture(frame, picture)) return Failure{Error::bad_argument, 0, problem};
   const size_t before = out.size();
   source_planes = whole_macroblocks(frame, source);
-  if (options.effort != Effort::fast) coarse.start_picture(source_planes, pool);
+  if (options.effort != Effort::fast) coarse.start_picture(source_planes, kernels.motion, pool);
   const bool free_quantizer = picture.quantizer_map.empty() && picture.quantizer_scale == 0;
   PictureType type = choose_type(picture);
   force_intra();

@@ -149,12 +149,12 @@ void Lookahead::look(const Frame420& first, std::span<const Frame420* const> fol
   step.quantizer_scale = quantizer_scale;
   step.bits_of_difference = bits_of_difference.data();
   step.source = whole_macroblocks(first, padded[0]);
-  coarse.start_picture(step.source, pool);
+  coarse.start_picture(step.source, kernels, pool);
   coarse.finish_picture();
   for (size_t i = 0; i < following.size(); ++i) {
     step.before = step.source;
     step.source = whole_macroblocks(*following[i], padded[(i + 1) & 1]);
-    coarse.start_picture(step.source, pool);
+    coarse.start_picture(step.source, kernels, pool);
     step.coarse_vectors = coarse.search(nullptr, kFCode, kernels, pool);
     step.coarse_columns = coarse.block_columns();
     step.last = i > 0 ? &vectors_[i - 1] : nullptr;

@@ -50,6 +50,37 @@ TEST_CASE("distances: every instruction set gives the scalar number") {
     }
 }
 
+TEST_CASE("means of squares: every instruction set gives the scalar bits and reads no further") {
+  KernelCheck check(4096);
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    const size_t n = 4 * (1 + seed % 11), stride = 4 * n + seed % 3 * 5;
+    const Guard guard = kGuards[seed / 2 % 2];
+    const Pattern pattern = seed % 5 == 0 ? Pattern::extremes : Pattern::random;
+    const uint8_t* samples = check.input<uint8_t>(0, 3 * stride + 4 * n, guard, seed % 64, pattern, 0, 255, seed);
+    check.compare<uint8_t>(n, guard, seed * 3 % 64, [&](const Kernels& table, uint8_t* out) {
+      table.motion.means_4x4(samples, static_cast<ptrdiff_t>(stride), static_cast<int>(n), out);
+    });
+  }
+}
+
+TEST_CASE("distances across: those of sad8, on every instruction set") {
+  GuardedBuffer source(4096), reference(4096);
+  for (uint64_t seed = 0; seed < 120; ++seed) {
+    const size_t n = 1 + seed % 19, width = 8 * ((n + 3) / 4) + 8, stride = width + seed % 3 * 5;
+    const Guard guard = kGuards[seed / 2 % 2];
+    uint8_t* const s = source.place(7 * stride + 8, guard, seed % 16);
+    uint8_t* const r = reference.place(7 * stride + width, guard, seed * 7 % 64);
+    fill(std::span(s, 7 * stride + 8), seed % 5 == 0 ? Pattern::extremes : Pattern::random, 0, 255, seed);
+    fill(std::span(r, 7 * stride + width), seed % 4 == 0 ? Pattern::lowest : Pattern::random, 0, 255, seed + 1);
+    const auto step = static_cast<ptrdiff_t>(stride);
+    for_each_isa([&](const Kernels& scalar, const Kernels& table) {
+      uint32_t sads[20];
+      table.motion.sad8_across(s, step, r, step, static_cast<int>(n), sads);
+      for (size_t k = 0; k < n; ++k) CHECK(sads[k] == scalar.motion.sad8(s, step, r + 2 * k, step));
+    });
+  }
+}
+
 TEST_CASE("predictions: every instruction set gives the scalar bits and reads no further than they say") {
   KernelCheck check(4096);
   for (uint64_t seed = 0; seed < 60; ++seed)

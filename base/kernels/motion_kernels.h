@@ -37,6 +37,10 @@ struct MotionKernels {
   // Sum of |source - reference| over 8x8 samples.
   uint32_t (*sad8)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                    ptrdiff_t reference_stride);
+  // sads[k], k < n: of sad8() at reference + 2 k. From each fourth place on 16 samples a row are readable, and there is
+  // room for n sads rounded up to a multiple of 4.
+  void (*sad8_across)(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
+                      ptrdiff_t reference_stride, int n, uint32_t* sads);
   // Against the prediction of kind h + 2 * v.
   uint32_t (*sad16_half[kHalfPelKinds])(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                                         ptrdiff_t reference_stride);
@@ -48,6 +52,8 @@ struct MotionKernels {
   uint32_t (*sse)(const uint8_t* a, ptrdiff_t a_stride, const uint8_t* b, ptrdiff_t b_stride, int width, int height);
   // Sum of the 16x16 samples, and of their squares.
   void (*moments16)(const uint8_t* source, ptrdiff_t stride, uint32_t* sum, uint32_t* sum_of_squares);
+  // Means of n squares of 4x4 samples side by side, rounded: (sum + 8) >> 4. n: a multiple of 4.
+  void (*means_4x4)(const uint8_t* samples, ptrdiff_t stride, int n, uint8_t* means);
 
   // Predictions of 16 samples width; height any. No overlap of the two.
   void (*predict16[kHalfPelKinds])(const uint8_t* reference, ptrdiff_t reference_stride, uint8_t* prediction,

@@ -102,6 +102,11 @@ uint32_t sad8(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* ref
   return vaddlvq_u16(sum);
 }
 
+void sad8_across(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference, ptrdiff_t reference_stride,
+                 int n, uint32_t* sads) {
+  for (int k = 0; k < n; ++k) sads[k] = sad8(source, source_stride, reference + 2 * k, reference_stride);
+}
+
 void sad16_quarters(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                     ptrdiff_t reference_stride, uint32_t* sads) {
   for (int i = 0; i < 4; ++i)
@@ -130,6 +135,24 @@ void moments16(const uint8_t* source, ptrdiff_t stride, uint32_t* sum, uint32_t*
   }
   *sum = vaddlvq_u16(sums);
   *sum_of_squares = vaddvq_u32(squares);
+}
+
+// Four squares: their means in 16 bits.
+uint16x4_t means_of_four(const uint8_t* samples, ptrdiff_t stride) {
+  uint16x8_t pairs = vpaddlq_u8(vld1q_u8(samples));
+  for (int row = 1; row < 4; ++row) pairs = vpadalq_u8(pairs, vld1q_u8(samples + row * stride));
+  return vrshrn_n_u32(vpaddlq_u16(pairs), 4);
+}
+void means_4x4(const uint8_t* samples, ptrdiff_t stride, int n, uint8_t* means) {
+  int i = 0;
+  for (; i + 8 <= n; i += 8)
+    vst1_u8(means + i, vmovn_u16(vcombine_u16(means_of_four(samples + 4 * i, stride),
+                                              means_of_four(samples + 4 * i + 16, stride))));
+  for (; i < n; i += 4) {
+    const uint16x4_t four = means_of_four(samples + 4 * i, stride);
+    const uint32_t bytes = vget_lane_u32(vreinterpret_u32_u8(vmovn_u16(vcombine_u16(four, four))), 0);
+    __builtin_memcpy(means + i, &bytes, 4);
+  }
 }
 
 void average(uint8_t* prediction, ptrdiff_t prediction_stride, const uint8_t* other, ptrdiff_t other_stride, int width,
@@ -303,6 +326,8 @@ void fill_motion_neon(MotionKernels& table) {
   table.satd16 = satd16;
   table.sse = sse;
   table.moments16 = moments16;
+  table.sad8_across = sad8_across;
+  table.means_4x4 = means_4x4;
   table.predict16[0] = predict16<0>, table.predict16[1] = predict16<1>;
   table.predict16[2] = predict16<2>, table.predict16[3] = predict16<3>;
   table.predict8_pair[0] = predict8_pair<0>, table.predict8_pair[1] = predict8_pair<1>;

@@ -83,6 +83,11 @@ uint32_t sad8(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* ref
   return sum;
 }
 
+void sad8_across(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference, ptrdiff_t reference_stride,
+                 int n, uint32_t* sads) {
+  for (int k = 0; k < n; ++k) sads[k] = sad8(source, source_stride, reference + 2 * k, reference_stride);
+}
+
 void sad16_quarters(const uint8_t* source, ptrdiff_t source_stride, const uint8_t* reference,
                     ptrdiff_t reference_stride, uint32_t* sads) {
   for (int i = 0; i < 4; ++i)
@@ -129,6 +134,15 @@ uint32_t sse(const uint8_t* a, ptrdiff_t a_stride, const uint8_t* b, ptrdiff_t b
       sum += static_cast<uint32_t>(difference * difference);
     }
   return sum;
+}
+
+void means_4x4(const uint8_t* samples, ptrdiff_t stride, int n, uint8_t* means) {
+  for (int i = 0; i < n; ++i) {
+    int sum = 0;
+    for (int y = 0; y < 4; ++y)
+      for (int x = 0; x < 4; ++x) sum += samples[y * stride + 4 * i + x];
+    means[i] = static_cast<uint8_t>((sum + 8) >> 4);
+  }
 }
 
 void moments16(const uint8_t* source, ptrdiff_t stride, uint32_t* sum, uint32_t* sum_of_squares) {
@@ -279,6 +293,8 @@ void fill_motion_scalar(MotionKernels& table) {
   table.satd16 = satd16;
   table.sse = sse;
   table.moments16 = moments16;
+  table.sad8_across = sad8_across;
+  table.means_4x4 = means_4x4;
   table.predict16[0] = predict16<0>, table.predict16[1] = predict16<1>;
   table.predict16[2] = predict16<2>, table.predict16[3] = predict16<3>;
   table.predict8_pair[0] = predict8_pair<0>, table.predict8_pair[1] = predict8_pair<1>;

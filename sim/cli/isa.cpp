@@ -39,6 +39,8 @@ const Kernel kKernelList[] = {
     PAC_KERNEL(motion, satd16),
     PAC_KERNEL(motion, sse),
     PAC_KERNEL(motion, moments16),
+    PAC_KERNEL(motion, sad8_across),
+    PAC_KERNEL(motion, means_4x4),
     PAC_KERNEL(motion, average),
     PAC_KERNEL(motion, fdct_macroblock),
     PAC_KERNEL(motion, fdct_reaching),
