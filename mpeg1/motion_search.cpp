@@ -1,6 +1,7 @@
 #include "mpeg1/motion_search.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 
 namespace pac::mpeg1 {
@@ -48,16 +49,19 @@ class Search {
   void try_candidates() {
     best_.cost = ~uint32_t{0};
     try_whole(0, 0);
-    MotionVector tried[32];
-    int n_tried = 1;  // tried[0] is zero
+    constexpr int kMost = 32;
+    uint32_t tried[kMost];
+    int n_tried = 0;
+    tried[n_tried++] = 0;
     for (int i = 0; i < in_.n_candidates; ++i) {
       MotionVector v = in_.range.clamp(in_.candidates[i]);
       v.x_halfpel = static_cast<int16_t>(v.x_halfpel & ~1);  // the range's ends are even
       v.y_halfpel = static_cast<int16_t>(v.y_halfpel & ~1);
+      const auto number = std::bit_cast<uint32_t>(v);
       bool is_new = true;
-      for (int k = 0; k < n_tried; ++k) is_new &= v != tried[k];
+      for (int k = 0; k < n_tried && is_new; ++k) is_new = number != tried[k];
       if (!is_new) continue;
-      if (n_tried < 32) tried[n_tried++] = v;
+      if (n_tried < kMost) tried[n_tried++] = number;
       try_whole(v.x_halfpel, v.y_halfpel);
     }
   }
