@@ -88,7 +88,8 @@ MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
   const auto q = static_cast<uint32_t>(quantizer());
   sad = still_sad;
   const bool all_still = std::all_of(candidates, candidates + n, [](MotionVector v) { return v == MotionVector{}; });
-  if (n > 0 && all_still && still_sad < std::max(256u, 32 * q)) return {};
+  // Not with larger errors: of what moves slowly the next pictures would inherit them, and no level would mend them.
+  if (n > 0 && all_still && still_sad < std::max(64u, 8 * q)) return {};
   FastSearchOptions options;
   options.good_sad = 32 * q;
   options.still_sad = still_sad;
