@@ -91,7 +91,7 @@ MotionVector FastCoder::search(uint32_t still_sad, uint32_t& sad) const {
   // Not with larger errors: of what moves slowly the next pictures would inherit them, and no level would mend them.
   if (n > 0 && all_still && still_sad < std::max(64u, 8 * q)) return {};
   FastSearchOptions options;
-  options.good_sad = 32 * q;
+  options.good_sad = 16 * q;
   options.still_sad = still_sad;
   options.still_bonus = kStillBonusBits * q;
   // Where the neighbors agree they are believed, but for some macroblocks that look for themselves.
