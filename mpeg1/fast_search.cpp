@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cstdlib>
 
 #include "mpeg1/motion_search.h"
@@ -62,14 +63,16 @@ class FastSearch {
   }
 
   void try_candidates() {
-    MotionVector tried[kMaxTried];  // zero was, too
+    uint32_t tried[kMaxTried + 1];
     int n_tried = 0;
-    for (int i = 0; i < in_.n_candidates && n_tried < kMaxTried; ++i) {
+    tried[n_tried++] = 0;  // the zero vector
+    for (int i = 0; i < in_.n_candidates && n_tried <= kMaxTried; ++i) {
       const MotionVector v = in_.range.clamp(in_.candidates[i]);
-      bool is_new = v != MotionVector{};
-      for (int k = 0; k < n_tried; ++k) is_new &= v != tried[k];
+      const auto number = std::bit_cast<uint32_t>(v);
+      bool is_new = true;
+      for (int k = 0; k < n_tried && is_new; ++k) is_new = number != tried[k];
       if (!is_new) continue;
-      tried[n_tried++] = v;
+      tried[n_tried++] = number;
       try_vector(v.x_halfpel, v.y_halfpel);
     }
   }
