@@ -1,6 +1,7 @@
 // encode() and reorder(): walk the faces, then code what hangs on them in the walk's order.
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "geomcodec/attributes.h"
 #include "geomcodec/connectivity.h"
@@ -47,14 +48,19 @@ std::vector<uint32_t> corners_in_order(const QuantizedMesh& mesh, const WalkOrde
 // What an encoder makes of the sections that tables may code. either: both, and keeps one of them.
 enum class Coding { adaptive, tables, either };
 
+std::vector<uint32_t> indices_of_points(const QuantizedMesh& mesh, const Points& points) {
+  std::vector<uint32_t> indices;
+  indices.reserve(mesh.indices.size());
+  for (const uint32_t vertex : mesh.indices) indices.push_back(points.of_vertex[vertex]);
+  return indices;
+}
+
 // expected: of the faces, by tables.
 Walked walk(const QuantizedMesh& mesh, Coding coding, Expected expected) {
   Walked walked;
   const auto n_vertices = static_cast<uint32_t>(mesh.vertices.size());
   const Points points = find_points(mesh.vertices);
-  std::vector<uint32_t> point_indices;
-  point_indices.reserve(mesh.indices.size());
-  for (const uint32_t vertex : mesh.indices) point_indices.push_back(points.of_vertex[vertex]);
+  std::vector<uint32_t> point_indices = indices_of_points(mesh, points);
   const std::vector<uint8_t> degenerate = find_degenerate_faces(point_indices, mesh.faces, points.count);
   CodedConnectivity connectivity = encode_connectivity(point_indices, mesh.faces, degenerate, points.count,
                                                        coding != Coding::tables, coding != Coding::adaptive, expected);
@@ -142,6 +148,11 @@ constexpr size_t kManyVertices = 16384;
 constexpr size_t kFewVertices = 512, kFewPlainVertices = 1024;
 constexpr int kFineBits = 13;
 
+// Positions alone.
+bool is_plain(const Header& header) {
+  return header.normal_bits == 0 && header.texcoord_bits == 0 && header.constant_color;
+}
+
 Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
   if (mesh.faces.empty() || effort == Effort::best) return Coding::adaptive;
   if (effort == Effort::fast || mesh.vertices.size() >= kManyVertices) return Coding::tables;
@@ -186,7 +197,7 @@ bool repeats(const Walked& walked) {
   if (walked.points.parts_repeat_by_size) return true;
   const std::vector<Position> positions = positions_of(walked);
   const uint64_t n_repeated = count_repeated(walked.points, positions, 0);
-  return 8 * n_repeated > walked.points.n_vertices || find_period(positions) != 0;
+  return 8 * n_repeated > walked.points.n_vertices || !find_periods(positions).empty();
 }
 
 void choose_tables(const Walked& walked, Effort effort, Header& header) {
@@ -244,6 +255,7 @@ struct Ranked {
         positions(given.begin(), given.end()) {
     for (size_t point = 0; point < rank.size(); ++point) positions[rank[point]] = given[point];
   }
+  Ranked(const Ranked&) = delete;  // stencils refer to the topology
 };
 
 // Whether it pays to code positions adaptively and ranked that tables code in so many bytes: where residuals that
@@ -265,75 +277,107 @@ void take_positions(PositionSection coded, bool ranked, const VertexSections& ou
 // What telling it takes in the header, and a decoder some time: it should gain a little more.
 constexpr size_t kRankedBytes = 8;
 
-// In whichever order of the points takes fewer bytes.
+// In whichever order of the points takes fewer bytes; `ranked`, if there, is the other one, and nothing else is tried
+// where plain coding takes clearly less by it.
 void encode_positions_adaptively(const Stencils& stencils, std::span<const Position> positions,
-                                 const VertexSections& out) {
+                                 const VertexSections& out, std::optional<Ranked>& ranked, bool ranked_is_better) {
   const Topology& walked = out.walked.points;
   const Header& header = out.header;
   const int bits = header.position_bits;
   const bool thorough = out.options.effort == Effort::best;
+  const auto encode_ranked = [&] {
+    return encode_positions(ranked->topology, ranked->stencils, ranked->positions, bits, header.trained, thorough);
+  };
+  if (ranked_is_better) return take_positions(encode_ranked(), true, out);
   PositionSection coded = encode_positions(walked, stencils, positions, bits, header.trained, thorough);
+  if (header.n_faces == 0) return take_positions(std::move(coded), false, out);
   // Where the walk has little to tell and choosing takes hardly less, as on regular meshes, the other order seldom
-  // gains.
-  const bool irregular = 8 * out.sections[kConnectivity].size() > walked.n_vertices;
-  if (header.n_faces > 0 && (thorough || (irregular && coded.choosing_bits > 0))) {
-    const Ranked ranked(walked, stencils, positions);
-    if (!thorough &&
-        50 * estimate_choosing(ranked.topology, ranked.stencils, ranked.positions, bits) > 49 * coded.choosing_bits)
-      return take_positions(std::move(coded), false, out);
-    PositionSection other =
-        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, header.trained, thorough);
-    if (other.bytes.size() + kRankedBytes < coded.bytes.size()) return take_positions(std::move(other), true, out);
-  }
-  take_positions(std::move(coded), false, out);
+  // gains: only a coarse grid's bytes are worth a look. Beside attributes positions have to be few where they can be.
+  const size_t face_bytes = out.sections[kConnectivity].size();
+  const bool irregular = bits < kFineBits ? 12 * face_bytes > walked.n_vertices && coded.chooses
+                                          : 8 * face_bytes > walked.n_vertices && coded.choosing_bits > 0;
+  const bool is_tight = !is_plain(header) && out.speed.plain.is_tight(coded.bytes.size());
+  if (!thorough && !irregular && !is_tight) return take_positions(std::move(coded), false, out);
+  if (!ranked) ranked.emplace(walked, stencils, positions);
+  // Whether plain coding takes at most so many hundredths by the other order.
+  const auto is_plainly_less = [&](uint64_t hundredths) {
+    const uint64_t plain = out.speed.plain.positions > 0 ? static_cast<uint64_t>(out.speed.plain.positions)
+                                                         : estimate_plainly(stencils, positions);
+    return 100 * estimate_plainly(ranked->stencils, ranked->positions) < hundredths * plain;
+  };
+  const bool gains =
+      thorough || (is_tight && is_plainly_less(99)) ||
+      (irregular && (50 * estimate_choosing(ranked->topology, ranked->stencils, ranked->positions, bits) <=
+                         49 * coded.choosing_bits ||
+                     (bits < kFineBits && is_plainly_less(96))));
+  if (!gains) return take_positions(std::move(coded), false, out);
+  PositionSection other = encode_ranked();
+  const bool is_less = other.bytes.size() + kRankedBytes < coded.bytes.size();
+  take_positions(std::move(is_less ? other : coded), is_less, out);
 }
 
 // Codes positions by tables unless those cannot be what speed asks for, and tells whether they are few enough without
 // knowing more than estimates of what the other coding takes; these are mostly a little low, and of no use where
-// positions repeat.
-bool tables_suffice(const Stencils& stencils, std::span<const Position> positions, const VertexSections& out) {
+// positions repeat. `ranked` becomes the points' other order where plain coding by that one has to be known too.
+bool tables_suffice(const Stencils& stencils, std::span<const Position> positions, const VertexSections& out,
+                    std::optional<Ranked>& ranked, bool& ranked_is_better) {
   const int bits = out.header.position_bits;
   if (repeats(out.walked)) return false;
   PlainBytes& plain = out.speed.plain;
-  plain = PlainBytes(out.sections[kConnectivity].size(), estimate_plainly(stencils, positions));
+  const size_t faces = out.sections[kConnectivity].size();
+  plain = PlainBytes(faces, estimate_plainly(stencils, positions));
   if (plain.are_raw(out.header)) return false;
   std::vector<uint8_t>& by_tables = (*out.by_tables)[kPositions];
   by_tables = encode_positions_by_tables(stencils, positions, bits, out.header.expected_of(kPositions));
   if (!plain.tables_may_suffice(by_tables.size())) return false;
+  // The other order helps plain coding most where the walk has little to tell.
+  if (5 * faces < out.walked.points.n_vertices && plain.is_tight(by_tables.size())) {
+    ranked.emplace(out.walked.points, stencils, positions);
+    const PlainBytes other(faces, estimate_plainly(ranked->stencils, ranked->positions));
+    ranked_is_better = 50 * other.positions < 49 * plain.positions;
+    if (ranked_is_better) plain = other;
+    if (!plain.tables_may_suffice(by_tables.size())) return false;
+  }
   const uint64_t adaptive_bytes = estimate_choosing(out.walked.points, stencils, positions, bits) * 33 / (8 * 32);
   if (!plain.tables_suffice(by_tables.size(), adaptive_bytes)) return false;
   out.speed.grown = static_cast<int64_t>(by_tables.size()) - static_cast<int64_t>(adaptive_bytes);
   return true;
 }
 
-// Of many points by tables, unless these take more than a coder without contexts, or choosing pays.
-void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
+// Of many points by tables, unless these take about what a coder without contexts takes, or choosing pays.
+void encode_many_positions(const Stencils& stencils, std::span<const Position> positions, const VertexSections& out) {
   const Walked& walked = out.walked;
   Header& header = out.header;
-  const std::vector<Position> positions = positions_of(walked);
   const int bits = header.position_bits;
   std::vector<uint8_t>& section = out.sections[kPositions];
-  if (header.by_tables(kPositions)) {
-    section = encode_positions_by_tables(stencils, positions, bits, header.expected_of(kPositions));
-    if (out.options.effort == Effort::fast) return;
-    const Ranked ranked(walked.points, stencils, positions);
-    const bool trained = out.options.trained_priors;
-    if (!choosing_pays(walked, stencils, positions, ranked, bits, trained, section.size()) &&
-        section.size() <= estimate_plainly(ranked.stencils, ranked.positions))
-      return;
-    PositionSection adaptive =
-        encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, trained, false);
-    if (adaptive.bytes.size() >= section.size()) return;
-    header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
-    header.trained = trained;
-    return take_positions(std::move(adaptive), true, out);
-  }
-  if (out.by_tables != nullptr && tables_suffice(stencils, positions, out)) {
-    section = std::move((*out.by_tables)[kPositions]);
+  section = encode_positions_by_tables(stencils, positions, bits, header.expected_of(kPositions));
+  if (out.options.effort == Effort::fast) return;
+  const Ranked ranked(walked.points, stencils, positions);
+  const bool trained = out.options.trained_priors;
+  out.speed.plain = PlainBytes::beside_tables(out.sections[kConnectivity].size(),
+                                              estimate_plainly(ranked.stencils, ranked.positions));
+  if (!choosing_pays(walked, stencils, positions, ranked, bits, trained, section.size()) &&
+      !out.speed.plain.is_tight(section.size()))
+    return;
+  PositionSection adaptive = encode_positions(ranked.topology, ranked.stencils, ranked.positions, bits, trained, false);
+  if (adaptive.bytes.size() >= section.size()) return;
+  header.tables = static_cast<uint8_t>(header.tables & ~(1u << kPositions));
+  header.trained = trained;
+  take_positions(std::move(adaptive), true, out);
+}
+
+void encode_positions_of(const Stencils& stencils, const VertexSections& out) {
+  Header& header = out.header;
+  const std::vector<Position> positions = positions_of(out.walked);
+  if (header.by_tables(kPositions)) return encode_many_positions(stencils, positions, out);
+  std::optional<Ranked> ranked;
+  bool ranked_is_better = false;
+  if (out.by_tables != nullptr && tables_suffice(stencils, positions, out, ranked, ranked_is_better)) {
+    out.sections[kPositions] = std::move((*out.by_tables)[kPositions]);
     header.tables = static_cast<uint8_t>(header.tables | 1u << kPositions);
     return;
   }
-  encode_positions_adaptively(stencils, positions, out);
+  encode_positions_adaptively(stencils, positions, out, ranked, ranked_is_better);
 }
 
 // Positions over points, all else over vertices; without seams these are the same mesh.
@@ -352,6 +396,24 @@ void encode_vertices(const VertexSections& out) {
   encode_attributes({topology, stencils, walked.seams.sibling}, out);
 }
 
+// The faces of a large mesh are worth coding again, adaptively, where tables take a byte for each, or where residuals
+// choose, which takes a decoder longer, and faces are a sixth of the geometry. Kept where that takes clearly less.
+void keep_fewer_faces(const QuantizedMesh& mesh, Header& header, Sections& sections) {
+  std::vector<uint8_t>& by_tables = sections[kConnectivity];
+  const bool choosing = header.chooses && 6 * by_tables.size() > by_tables.size() + sections[kPositions].size();
+  if (by_tables.size() <= header.n_faces && !choosing) return;
+  const Points points = find_points(mesh.vertices);
+  const std::vector<uint32_t> indices = indices_of_points(mesh, points);
+  const std::vector<uint8_t> degenerate = find_degenerate_faces(indices, mesh.faces, points.count);
+  std::vector<uint8_t> adaptive =
+      encode_connectivity(indices, mesh.faces, degenerate, points.count, true, false, Expected::nothing).adaptive_bytes;
+  const size_t growth = by_tables.size() - std::min(by_tables.size(), adaptive.size());
+  const size_t bytes = adaptive.size() + sections[kPositions].size() + sections[kDegenerate].size();
+  if (growth * kGrowthBesideChoosing <= bytes) return;
+  by_tables = std::move(adaptive);
+  header.tables = static_cast<uint8_t>(header.tables & ~(1u << kConnectivity));
+}
+
 }  // namespace
 
 Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptions& options, EncodedSize* size) {
@@ -368,6 +430,7 @@ Result<std::vector<uint8_t>> encode(const QuantizedMesh& mesh, const EncodeOptio
   sections[kSeams] = std::move(walked.seam_bytes);
   VertexSections::Speed speed;
   encode_vertices({walked, options, header, sections, coding == Coding::either ? &by_tables : nullptr, speed});
+  if (coding == Coding::tables && options.effort == Effort::balanced) keep_fewer_faces(mesh, header, sections);
   if (coding == Coding::either) keep_fastest(header, speed.plain, speed.grown, sections, by_tables);
   header.expected_tables = header.expected_tables && header.may_expect_tables();
   header.expected_faces = options.trained_priors && header.by_tables(kConnectivity);

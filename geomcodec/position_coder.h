@@ -194,8 +194,8 @@ class PositionCoder {
   Candidates candidates_for(const Stencil& stencil, const Prediction& prediction) const;
   bool code_choice(const Stencil& stencil, const Prediction& prediction, std::span<Position> positions, uint32_t v);
   void code_start(const Stencil& stencil, const Position& position, Prediction& prediction);
-  uint32_t cheapest(const Candidates& candidates, const Starts& starts, Prediction prediction,
-                    const Position& position) const;
+  uint32_t cheapest(const Candidates& candidates, const Starts& starts, const uint32_t (&scale)[3],
+                    Prediction prediction, const Position& position) const;
   int32_t expected_of(const Prediction& prediction, size_t role, const int64_t (&missed)[3]) const;
   void code_residuals(uint32_t v, const Stencil& stencil, const Prediction& prediction, Position& position);
   void code_position(uint32_t v, const Stencil& stencil, Prediction& prediction, std::span<Position> positions) {
@@ -364,7 +364,11 @@ void PositionCoder<Coder>::code_start(const Stencil& stencil, const Position& po
   SymbolModel& by_basis = models_->choice_by_basis[prediction.basis][n - 1];
   SymbolModel& by_last = models_->choice_by_last[last_choice_][n - 1];
   uint32_t choice = 1;
-  if constexpr (!Coder::kDecodes) choice = cheapest(candidates, starts_of(by_basis, by_last), prediction, position);
+  if constexpr (!Coder::kDecodes) {
+    uint32_t scale[3];
+    get_scales(static_cast<uint32_t>(known_.size() - 1), stencil, scale);
+    choice = cheapest(candidates, starts_of(by_basis, by_last), scale, prediction, position);
+  }
   choice = code_symbol(coder_, by_basis, by_last, choice);
   if (choice == 0 || choice >= n) choice = 1;
   last_choice_ = choice;
@@ -373,10 +377,11 @@ void PositionCoder<Coder>::code_start(const Stencil& stencil, const Position& po
   for (size_t axis = 0; axis < 3; ++axis) prediction.at[axis] = candidates.at[choice].field(axis);
 }
 
-// The encoder's choice: the fewest bits by estimate, eight fifths of the residuals' logarithms beside the symbol.
+// The encoder's choice: the fewest bits by estimate, twice the logarithms of the residuals beside a quarter of what the
+// neighbors' classes let expect, and the symbol.
 template <class Coder>
-uint32_t PositionCoder<Coder>::cheapest(const Candidates& candidates, const Starts& starts, Prediction prediction,
-                                        const Position& position) const {
+uint32_t PositionCoder<Coder>::cheapest(const Candidates& candidates, const Starts& starts, const uint32_t (&scale)[3],
+                                        Prediction prediction, const Position& position) const {
   // log2 in 1/256, x > 0, by chords.
   const auto logarithm = [](uint32_t x) {
     const uint32_t whole = static_cast<uint32_t>(std::bit_width(x)) - 1;
@@ -392,9 +397,10 @@ uint32_t PositionCoder<Coder>::cheapest(const Candidates& candidates, const Star
       const size_t axis = prediction.order[role];
       const int32_t residual = ((position[axis] - expected_of(prediction, role, missed) + half_) & mask_) - half_;
       missed[role] = position[axis] - prediction.at[axis];
-      sum += logarithm(static_cast<uint32_t>(std::abs(residual)) + 1);
+      const uint32_t usual = (1u << scale[role] / 2) >> 2;
+      sum += logarithm(static_cast<uint32_t>(std::abs(residual)) + 1 + usual) * 2;
     }
-    const int32_t cost = sum * 8 / 5 - logarithm(uint32_t{starts.at[choice + 1]} - starts.at[choice]);
+    const int32_t cost = sum - logarithm(uint32_t{starts.at[choice + 1]} - starts.at[choice]);
     if (choice > 1 && cost >= best_cost) continue;
     best = choice;
     best_cost = cost;

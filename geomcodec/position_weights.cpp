@@ -68,7 +68,7 @@ PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, 
   return weights;
 }
 
-uint32_t find_period(std::span<const Position> positions) {
+std::vector<uint32_t> find_periods(std::span<const Position> positions) {
   constexpr size_t kSample = 4096, kTable = 4096;
   const size_t n = std::min(kSample, positions.size());
   // Steps from vertex to vertex, an axis in 20 bits.
@@ -77,31 +77,38 @@ uint32_t find_period(std::span<const Position> positions) {
     for (size_t axis = 0; axis < 3; ++axis)
       step[v] = step[v] << 20 | static_cast<uint32_t>(positions[v][axis] + 65536 - positions[v - 1][axis]);
   }
-  // Distances between occurrences of the same three steps.
-  std::vector<uint32_t> last(kTable, 0), votes(n, 0);
-  for (size_t v = 4; v < n; ++v) {
-    uint64_t hash = 0;
-    for (size_t i = 0; i < 3; ++i) hash = (hash ^ step[v - i]) * 0x9E3779B97F4A7C15u;
-    uint32_t& before = last[hash >> 52];
-    if (before != 0) ++votes[v - before];
-    before = static_cast<uint32_t>(v);
-  }
-  uint32_t best = 0;
-  size_t best_hits = n / 2;
-  for (int round = 0; round < 8; ++round) {
-    const auto top = std::max_element(votes.begin(), votes.end());
-    if (top == votes.end() || *top == 0) break;
-    const auto period = static_cast<uint32_t>(top - votes.begin());
-    *top = 0;
-    for (const uint32_t candidate : {period, 2 * period, 4 * period}) {
-      size_t hits = 0;
-      for (size_t v = candidate + 1; v < n; ++v) hits += step[v] == step[v - candidate] ? 1 : 0;
-      if (hits <= best_hits) continue;
-      best_hits = hits;
-      best = candidate;
+  // Distances between occurrences of the same so many steps: rows of equal things that rounding moves repeat sooner
+  // than whole rows do, but only these with all that rounding does.
+  std::vector<uint32_t> periods;
+  for (const size_t context : {size_t{3}, size_t{24}}) {
+    if (n <= context || (context > 3 && periods.empty())) break;
+    uint32_t best = 0;
+    size_t least_missed = n / 2;  // and a quarter of those that nothing can be before
+    std::vector<uint32_t> last(kTable, 0), votes(n, 0);
+    for (size_t v = context + 1; v < n; ++v) {
+      uint64_t hash = 0;
+      for (size_t i = 0; i < context; ++i) hash = (hash ^ step[v - i]) * 0x9E3779B97F4A7C15u;
+      uint32_t& before = last[hash >> 52];
+      if (before != 0) ++votes[v - before];
+      before = static_cast<uint32_t>(v);
     }
+    for (int round = 0; round < 8; ++round) {
+      const auto top = std::max_element(votes.begin(), votes.end());
+      if (top == votes.end() || *top == 0) break;
+      const auto period = static_cast<uint32_t>(top - votes.begin());
+      *top = 0;
+      for (const uint32_t candidate : {period, 2 * period, 4 * period}) {
+        if (2 * candidate > n) continue;
+        size_t missed = candidate / 4;
+        for (size_t v = candidate + 1; v < n; ++v) missed += step[v] == step[v - candidate] ? 0 : 1;
+        if (missed >= least_missed) continue;
+        least_missed = missed;
+        best = candidate;
+      }
+    }
+    if (best != 0 && (periods.empty() || best != periods.front())) periods.push_back(best);
   }
-  return best;
+  return periods;
 }
 
 }  // namespace pac::geomcodec

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
+#include <vector>
 
 #include "geomcodec/positions.h"
 #include "geomcodec/prediction.h"
@@ -152,7 +153,8 @@ inline Features features_of(const Stencil& stencil, std::span<const KnownPositio
 // the caller has.
 PositionWeights fit_weights(const Topology& topology, const Stencils& stencils, std::span<const Stencil> first,
                             std::span<const Position> positions);
-// After how many vertices the steps from vertex to vertex repeat, if most of them do; else 0.
-uint32_t find_period(std::span<const Position> positions);
+// After how many vertices the steps from vertex to vertex repeat, if most of them do: by few steps, then, if that is
+// another, by many.
+std::vector<uint32_t> find_periods(std::span<const Position> positions);
 
 }  // namespace pac::geomcodec

@@ -144,10 +144,10 @@ Choice choose_prediction(Trials& trials) {
 uint64_t choose_candidates(Trials& trials, Choice& best) {
   PositionWeights with_exact = best.weights, choosing = best.weights;
   with_exact.exact = choosing.exact = choosing.chooses = true;
-  const uint32_t period = find_period(trials.positions);
-  const bool codes_all = period != 0 || trials.codes_all;
+  const std::vector<uint32_t> periods = find_periods(trials.positions);
+  const bool codes_all = !periods.empty() || trials.codes_all;
   Choice chooses = estimated(trials, choosing);
-  const bool gains = period == 0 && 25 * chooses.estimate < 24 * best.estimate;
+  const bool gains = periods.empty() && 25 * chooses.estimate < 24 * best.estimate;
   if (gains && (choosing.customized || choosing.lifted)) {  // single parallelograms may be better without
     Choice plainly = estimated(trials, {.exact = true, .chooses = true});
     if (plainly.estimate < chooses.estimate) chooses = std::move(plainly);
@@ -165,7 +165,7 @@ uint64_t choose_candidates(Trials& trials, Choice& best) {
   const bool tries_exact = codes_all || 100 * trials.estimate(with_exact) < 99 * best.estimate;
   const bool tries_choosing = codes_all || 1000 * chooses.estimate < 1003 * best.estimate;
   if (tries_exact) try_weights(with_exact);
-  if (period != 0) {
+  for (const uint32_t period : periods) {
     PositionWeights repeating = best.weights;
     repeating.period = period;
     try_weights(repeating);

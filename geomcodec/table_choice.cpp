@@ -8,7 +8,7 @@ namespace {
 
 // Tables may make a stream grow by this part of it, faces and positions by the second one where plain coding takes far
 // more.
-constexpr int64_t kGrowth = 24, kMostGrowth = 3;
+constexpr int64_t kGrowth = 24, kMostGrowth = 4;
 // So few bytes in all sections that may be either are left as they are.
 constexpr int64_t kFewBytes = 1024;
 
@@ -52,6 +52,10 @@ bool PlainBytes::are_raw(const Header& header) const {
   return 8 * positions >= int64_t{3} * header.position_bits * header.n_points();
 }
 
+bool PlainBytes::is_tight(size_t position_bytes) const {
+  return all > 0 && 100 * (static_cast<int64_t>(position_bytes) + connectivity) > 96 * all;
+}
+
 bool PlainBytes::tables_may_suffice(size_t bytes_by_tables) const {
   return static_cast<int64_t>(bytes_by_tables) + connectivity <= below(all);
 }
@@ -68,7 +72,11 @@ void keep_fastest(Header& header, const PlainBytes& plain, int64_t grown, Sectio
   if (bytes < kFewBytes) return;
   const std::vector<Candidate> candidates = candidates_of(header, sections, by_tables);
   const auto geometry_bytes = static_cast<int64_t>(sections[kConnectivity].size() + sections[kPositions].size());
-  const int64_t room = bytes / kGrowth, geometry_room = room_for_geometry(geometry_bytes - grown, plain.all);
+  // What attributes take beside is not estimated: they may not spend what faces and positions leave little of.
+  const int64_t room = plain.is_tight(sections[kPositions].size()) ? 0 : bytes / kGrowth;
+  const int64_t geometry_room =
+      std::min(room_for_geometry(geometry_bytes - grown, plain.all),
+               header.chooses && !header.by_tables(kPositions) ? geometry_bytes / kGrowthBesideChoosing : INT64_MAX);
   const uint8_t settled = header.tables;
   int64_t most_saved = 0;
   for (uint32_t subset = 1; subset < 1u << candidates.size(); ++subset) {
