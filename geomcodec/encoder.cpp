@@ -148,9 +148,9 @@ constexpr size_t kManyVertices = 16384;
 constexpr size_t kFewVertices = 512, kFewPlainVertices = 1024;
 constexpr int kFineBits = 13;
 
-// Positions alone.
-bool is_plain(const Header& header) {
-  return header.normal_bits == 0 && header.texcoord_bits == 0 && header.constant_color;
+// Normals and texture coordinates take about what other coders' do: with them positions have to make the difference.
+bool has_more_than_colors(const Header& header) {
+  return header.normal_bits != 0 || header.texcoord_bits != 0;
 }
 
 Coding coding_for(const QuantizedMesh& mesh, Effort effort) {
@@ -292,11 +292,11 @@ void encode_positions_adaptively(const Stencils& stencils, std::span<const Posit
   PositionSection coded = encode_positions(walked, stencils, positions, bits, header.trained, thorough);
   if (header.n_faces == 0) return take_positions(std::move(coded), false, out);
   // Where the walk has little to tell and choosing takes hardly less, as on regular meshes, the other order seldom
-  // gains: only a coarse grid's bytes are worth a look. Beside attributes positions have to be few where they can be.
+  // gains: only a coarse grid's bytes are worth a look. And what makes the difference where attributes do not.
   const size_t face_bytes = out.sections[kConnectivity].size();
   const bool irregular = bits < kFineBits ? 12 * face_bytes > walked.n_vertices && coded.chooses
                                           : 8 * face_bytes > walked.n_vertices && coded.choosing_bits > 0;
-  const bool is_tight = !is_plain(header) && out.speed.plain.is_tight(coded.bytes.size());
+  const bool is_tight = has_more_than_colors(header) && out.speed.plain.is_tight(coded.bytes.size());
   if (!thorough && !irregular && !is_tight) return take_positions(std::move(coded), false, out);
   if (!ranked) ranked.emplace(walked, stencils, positions);
   // Whether plain coding takes at most so many hundredths by the other order.

@@ -72,8 +72,10 @@ void keep_fastest(Header& header, const PlainBytes& plain, int64_t grown, Sectio
   if (bytes < kFewBytes) return;
   const std::vector<Candidate> candidates = candidates_of(header, sections, by_tables);
   const auto geometry_bytes = static_cast<int64_t>(sections[kConnectivity].size() + sections[kPositions].size());
-  // What attributes take beside is not estimated: they may not spend what faces and positions leave little of.
-  const int64_t room = plain.is_tight(sections[kPositions].size()) ? 0 : bytes / kGrowth;
+  // Normals and texture take about what other coders' do: they may not spend what faces and positions leave little of.
+  const bool is_tight =
+      (header.normal_bits != 0 || header.texcoord_bits != 0) && plain.is_tight(sections[kPositions].size());
+  const int64_t room = is_tight ? 0 : bytes / kGrowth;
   const int64_t geometry_room =
       std::min(room_for_geometry(geometry_bytes - grown, plain.all),
                header.chooses && !header.by_tables(kPositions) ? geometry_bytes / kGrowthBesideChoosing : INT64_MAX);
